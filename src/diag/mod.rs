@@ -1,0 +1,10 @@
+//! How rtdsl tells a person what is wrong: texts, places in them, and messages with a place, a reason and a remedy. Knows
+//! no phase; every phase reports through it.
+
+pub mod diagnostic;
+pub mod place;
+pub mod source;
+
+pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
+pub use place::{CallFrame, Place};
+pub use source::{FileId, Source, Sources, Span};

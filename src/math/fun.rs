@@ -1,0 +1,79 @@
+//! Elementary functions with the same bits on every machine: pinned pure-Rust `libm`, and trigonometry of angles in
+//! degrees whose exact cases are exact (`cos(90deg)` is 0, `sin(30deg)` is 0.5).
+
+pub use libm::{acos, asin, atan, atan2, cbrt, exp, exp2, hypot, log as ln, log2, log10, pow, sqrt};
+
+/// Sine of an angle in degrees. Exact at every multiple of 30° where the sine is rational.
+pub fn sin_deg(degrees: f64) -> f64 {
+    if !degrees.is_finite() {
+        return f64::NAN;
+    }
+    let d = degrees % 360.0; // exact: the remainder of two floats is a float
+    let (d, sign) = if d < 0.0 { (-d, -1.0) } else { (d, 1.0) };
+    let (d, sign) = if d >= 180.0 { (d - 180.0, -sign) } else { (d, sign) };
+    let d = if d > 90.0 { 180.0 - d } else { d };
+    sign * quadrant_sin(d)
+}
+
+/// Cosine of an angle in degrees. Exact at every multiple of 30° where the cosine is rational.
+pub fn cos_deg(degrees: f64) -> f64 {
+    if !degrees.is_finite() {
+        return f64::NAN;
+    }
+    let d = (degrees % 360.0).abs();
+    let d = if d > 180.0 { 360.0 - d } else { d };
+    if d > 90.0 { -quadrant_cos(180.0 - d) } else { quadrant_cos(d) }
+}
+
+/// Tangent of an angle in degrees; infinite at odd multiples of 90°.
+pub fn tan_deg(degrees: f64) -> f64 {
+    let (s, c) = (sin_deg(degrees), cos_deg(degrees));
+    if (degrees % 45.0 == 0.0) && c != 0.0 { sign_or_zero(s) * sign_or_zero(c) } else { s / c }
+}
+
+fn sign_or_zero(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { 1f64.copysign(x) }
+}
+
+fn quadrant_sin(d: f64) -> f64 {
+    match d {
+        30.0 => 0.5,
+        90.0 => 1.0,
+        _ if d > 45.0 => libm::cos((90.0 - d).to_radians()),
+        _ => libm::sin(d.to_radians()),
+    }
+}
+
+fn quadrant_cos(d: f64) -> f64 {
+    quadrant_sin(90.0 - d)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_cases_are_exact() {
+        for k in -8..=8 {
+            let turn = 360.0 * k as f64;
+            assert_eq!(sin_deg(turn + 30.0), 0.5);
+            assert_eq!(sin_deg(turn + 210.0), -0.5);
+            assert_eq!(cos_deg(turn + 90.0), 0.0);
+            assert_eq!(cos_deg(turn - 90.0), 0.0);
+            assert_eq!(cos_deg(turn + 120.0), -0.5);
+            assert_eq!(cos_deg(turn + 180.0), -1.0);
+            assert_eq!(sin_deg(turn + 180.0), 0.0);
+            assert_eq!(tan_deg(turn + 45.0), 1.0);
+            assert_eq!(tan_deg(turn + 135.0), -1.0);
+        }
+    }
+
+    #[test]
+    fn the_rest_agrees_with_radians() {
+        for i in -4000..4000 {
+            let d = i as f64 * 0.37;
+            assert!((sin_deg(d) - libm::sin(d.to_radians())).abs() < 1e-14);
+            assert!((cos_deg(d) - libm::cos(d.to_radians())).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What is asked of the tracer, and what it gives back.
+
+use crate::diag::Place;
+use crate::film::Film;
+use crate::scene::{AntiAliasing, MaterialId, NodeId, Precision, Settings};
+
+/// How to trace: the scene's settings with the command line's changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Pixels across of the whole picture.
+    pub width: u32,
+    /// Pixels down of the whole picture.
+    pub height: u32,
+    /// Rays a pixel.
+    pub aa: AntiAliasing,
+    /// Reflections and transmissions one after another.
+    pub max_depth: u32,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// The part of the picture that is made; `None` for all of it.
+    pub crop: Option<Crop>,
+    /// Worker threads; `None` for one a core. Never changes a bit of the picture.
+    pub threads: Option<usize>,
+    /// Side of a tile in pixels, 1 to 32; for tests: never changes a bit of the picture.
+    pub tile: u32,
+}
+
+/// A part of the picture, in pixels; within it and not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x: u32,
+    /// First row, from the top.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Options {
+    /// The scene's own settings.
+    pub fn from_settings(s: &Settings) -> Options {
+        Options {
+            width: s.width,
+            height: s.height,
+            aa: s.aa,
+            max_depth: s.max_depth,
+            precision: s.precision,
+            crop: None,
+            threads: None,
+            tile: 16, // the best size measured: its rays and hits stay in the first-level cache
+        }
+    }
+    /// The part that is made, written out.
+    pub fn crop_or_all(&self) -> Crop {
+        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
+    }
+}
+
+/// Told of finished work; called from worker threads.
+pub trait Progress: Sync {
+    /// `pixels` more are done.
+    fn advance(&self, pixels: u64);
+}
+
+/// A [`Progress`] that tells nobody.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn advance(&self, _pixels: u64) {}
+}
+
+/// How many rays were traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// From the camera.
+    pub camera: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// Mirrored.
+    pub reflected: u64,
+    /// Gone through a surface, straight on or refracted.
+    pub transmitted: u64,
+}
+
+/// A finished picture.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// Linear light; of the crop's size where there is one.
+    pub film: Film,
+    /// Rays by kind.
+    pub rays: RayCounts,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+/// One ability of the renderer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// Its name, in words of the language: "reflection", "image patterns", "shadows", …
+    pub name: &'static str,
+    /// The text that first required it; `None` where the scene does without.
+    pub required_by: Option<Place>,
+    /// Whether it is in use even without a text (a default material, say).
+    pub in_use: bool,
+    /// What using it means for memory and time, or what leaving it out saves.
+    pub detail: String,
+}
+
+/// What one pixel sees.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// The shape's node.
+    pub node: NodeId,
+    /// Its material.
+    pub material: MaterialId,
+    /// Where the ray meets it, in scene units.
+    pub point: [f64; 3],
+    /// The unit normal there, towards the viewer.
+    pub normal: [f64; 3],
+    /// Distance from the ray's origin, in scene units.
+    pub distance: f64,
+    /// The base colour there, linear.
+    pub color: [f64; 3],
+    /// Every light's node, and the share of it that arrives: 0 where the surface faces away or lies in shadow.
+    pub lights: Vec<(NodeId, [f64; 3])>,
+}

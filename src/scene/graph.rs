@@ -1,0 +1,150 @@
+//! The scene: arenas of nodes, materials, patterns and images that refer to each other by id. A value that the text uses
+//! twice is stored once; a node may have several parents.
+
+use super::{Camera, Color, Image, Light, Material, MaterialId, Pattern, PatternId, Settings, Shape};
+use crate::diag::Place;
+use crate::math::Affine;
+
+/// Names a node of a [`Scene`]. Children have smaller ids than their parents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(pub u32);
+
+/// Everything a picture needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Shapes, lights, groups and transforms.
+    pub nodes: Vec<Node>,
+    /// What the file's top level was given, in the order of the text.
+    pub roots: Vec<NodeId>,
+    /// Materials; [`MaterialId`]`(0)` is the default grey.
+    pub materials: Vec<Material>,
+    /// Patterns.
+    pub patterns: Vec<Pattern>,
+    /// Pictures that a live pattern shows; others were never opened.
+    pub images: Vec<Image>,
+    /// At least one; the first is the default.
+    pub cameras: Vec<Camera>,
+    /// What a ray sees that meets nothing.
+    pub background: Color,
+    /// Light that reaches every point.
+    pub ambient: Color,
+    /// Size and quality.
+    pub settings: Settings,
+}
+
+/// A part of the scene and the text that made it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// What it is.
+    pub kind: NodeKind,
+    /// Its material; `None` takes the one around it. Ignored for lights.
+    pub material: Option<MaterialId>,
+    /// What the author called it.
+    pub name: Option<String>,
+    /// The text and the calls.
+    pub place: Place,
+}
+
+/// What a node is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NodeKind {
+    /// A surface.
+    Shape(Shape),
+    /// A light.
+    Light(Light),
+    /// Several nodes.
+    Group(Vec<NodeId>),
+    /// A moved, turned or scaled node. The map can be inverted.
+    Transformed {
+        /// What is moved.
+        child: NodeId,
+        /// Where it goes.
+        parent_from_child: Affine,
+    },
+}
+
+/// One shape or light where it stands in the world.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Its node: a shape or a light.
+    pub node: NodeId,
+    /// All transforms around it.
+    pub world_from_object: Affine,
+    /// Its own material, or the innermost one around it, or the default.
+    pub material: MaterialId,
+}
+
+impl Scene {
+    /// A scene of nothing, with the default camera, material and settings.
+    pub fn empty() -> Scene {
+        let mut patterns = Vec::new();
+        let plain = Material::plain(|p| {
+            patterns.push(p);
+            PatternId(patterns.len() as u32 - 1)
+        });
+        Scene {
+            nodes: Vec::new(),
+            roots: Vec::new(),
+            materials: vec![plain],
+            patterns,
+            images: Vec::new(),
+            cameras: vec![Camera::default()],
+            background: Color::BLACK,
+            ambient: Color::linear_gray(0.1),
+            settings: Settings::default(),
+        }
+    }
+
+    /// The node named `id`.
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+    /// The material named `id`.
+    pub fn material(&self, id: MaterialId) -> &Material {
+        &self.materials[id.0 as usize]
+    }
+    /// The pattern named `id`.
+    pub fn pattern(&self, id: PatternId) -> &Pattern {
+        &self.patterns[id.0 as usize]
+    }
+
+    /// How many [`Instance`]s there are; saturating, and found without visiting them: a few nested groups can make more
+    /// than any memory holds.
+    pub fn instance_count(&self) -> u64 {
+        let mut counts = vec![0u64; self.nodes.len()];
+        for (i, node) in self.nodes.iter().enumerate() {
+            counts[i] = match &node.kind {
+                NodeKind::Shape(_) | NodeKind::Light(_) => 1,
+                NodeKind::Group(children) => children.iter().fold(0u64, |n, c| n.saturating_add(counts[c.0 as usize])),
+                NodeKind::Transformed { child, .. } => counts[child.0 as usize],
+            };
+        }
+        self.roots.iter().fold(0u64, |n, r| n.saturating_add(counts[r.0 as usize]))
+    }
+
+    /// Calls `visit` for every shape and light, in the order of the text, with its transforms composed.
+    pub fn for_each_instance(&self, mut visit: impl FnMut(Instance)) {
+        let mut stack: Vec<Instance> = self
+            .roots
+            .iter()
+            .rev()
+            .map(|&node| Instance { node, world_from_object: Affine::IDENTITY, material: MaterialId(0) })
+            .collect();
+        while let Some(mut at) = stack.pop() {
+            let node = self.node(at.node);
+            // The innermost material wins, so a node's own replaces what came from around it.
+            at.material = node.material.unwrap_or(at.material);
+            match &node.kind {
+                NodeKind::Shape(_) | NodeKind::Light(_) => visit(at),
+                NodeKind::Group(children) => {
+                    stack.extend(children.iter().rev().map(|&node| Instance { node, ..at.clone() }));
+                }
+                NodeKind::Transformed { child, parent_from_child } => {
+                    at.world_from_object = at.world_from_object.compose(parent_from_child);
+                    at.node = *child;
+                    stack.push(at);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! A decoded picture file, used as a pattern.
+
+use std::path::PathBuf;
+
+/// Names an image of a [`Scene`](super::Scene).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ImageId(pub u32);
+
+/// Texels, sRGB-encoded as in the file; row 0 is the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// The file.
+    pub path: PathBuf,
+    /// Texels across; at least 1.
+    pub width: u32,
+    /// Texels down; at least 1.
+    pub height: u32,
+    /// `width × height` texels, row by row.
+    pub texels: Vec<[u8; 3]>,
+}

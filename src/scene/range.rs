@@ -1,0 +1,15 @@
+//! The magnitudes that geometry may have, and why: squares of lengths must neither overflow nor lose bits to underflow.
+
+/// Largest supported magnitude of a coordinate or size: its square, 1e280, is far below the largest `f64`, 1.8e308.
+pub const LARGEST: f64 = 1e140;
+/// Smallest supported magnitude that isn't 0: its square, 1e-280, is far above the smallest normal `f64`, 2.2e-308.
+pub const SMALLEST: f64 = 1e-140;
+/// Widest and highest picture, in pixels: a row still fits the 32-bit sizes of picture files many times over.
+pub const LARGEST_SIDE: u32 = 65_536;
+/// Most pixels of a picture: 2^28, 3.2 GB of linear colours.
+pub const MOST_PIXELS: u64 = 1 << 28;
+
+/// Whether a coordinate is supported: 0, or of a magnitude from [`SMALLEST`] to [`LARGEST`].
+pub fn is_supported(x: f64) -> bool {
+    x == 0.0 || (SMALLEST..=LARGEST).contains(&x.abs())
+}
