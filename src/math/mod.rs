@@ -5,6 +5,7 @@ pub mod affine;
 pub mod dd;
 pub mod fun;
 pub mod hash;
+pub mod noise;
 pub mod real;
 
 pub use affine::Affine;

@@ -21,6 +21,8 @@ pub trait Elem: Copy + PartialOrd + Default + Send + Sync + 'static {
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// The same truth value in every lane.
     fn splat(value: bool) -> Self;
+    /// True in the first `n` lanes.
+    fn first(n: usize) -> Self;
     /// One bit a lane, lane 0 lowest.
     fn bits(self) -> u32;
     /// Whether any lane is true.
@@ -61,10 +63,9 @@ pub trait Real:
     fn same(self, o: Self) -> Self::Mask;
     /// `a` where `m`, else `b`.
     fn select(m: Self::Mask, a: Self, b: Self) -> Self;
-    /// A function of one value, applied lane by lane in `f64`: for elementary functions and table look-ups.
-    fn map(self, f: impl FnMut(f64) -> f64) -> Self;
-    /// As [`map`](Real::map), of two values.
-    fn zip(self, o: Self, f: impl FnMut(f64, f64) -> f64) -> Self;
+    /// A function of N values that gives M, applied lane by lane in `f64`: for elementary functions, look-ups in tables,
+    /// and whatever branches too much to be written with masks.
+    fn each<const N: usize, const M: usize>(v: [Self; N], f: impl FnMut([f64; N]) -> [f64; M]) -> [Self; M];
 
     /// Zero.
     #[inline(always)]
@@ -75,6 +76,11 @@ pub trait Real:
     #[inline(always)]
     fn one() -> Self {
         Self::splat(1.0)
+    }
+    /// [`each`](Real::each) of one value.
+    #[inline(always)]
+    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
+        Self::each([self], |[x]| [f(x)])[0]
     }
     /// `self * b - c` with one rounding.
     #[inline(always)]
@@ -140,6 +146,10 @@ impl Mask for Bool {
         Bool(value)
     }
     #[inline(always)]
+    fn first(n: usize) -> Bool {
+        Bool(n > 0)
+    }
+    #[inline(always)]
     fn bits(self) -> u32 {
         self.0 as u32
     }
@@ -202,12 +212,11 @@ macro_rules! scalar {
                 if m.0 { a } else { b }
             }
             #[inline(always)]
-            fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
-                f(self as f64) as $t
-            }
-            #[inline(always)]
-            fn zip(self, o: Self, mut f: impl FnMut(f64, f64) -> f64) -> Self {
-                f(self as f64, o as f64) as $t
+            fn each<const N: usize, const M: usize>(
+                v: [Self; N],
+                mut f: impl FnMut([f64; N]) -> [f64; M],
+            ) -> [Self; M] {
+                f(v.map(|x| x as f64)).map(|x| x as $t)
             }
         }
         impl Lane for $t {

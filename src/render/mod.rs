@@ -1,36 +1,36 @@
 //! From scene to film: the world as the tracer sees it, and the tracer.
+//!
+//! [`World::build`] takes from a scene what its picture requires; [`render`] traces it tile by tile; [`probe`] tells what one
+//! pixel sees. Within: `shape/` holds the kernels, one a file, each written once for every scalar; `bvh` and `cull` find
+//! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
+//! meet.
 
+pub mod batch;
+pub mod bounds;
+pub mod bvh;
+pub mod camera;
+pub mod cull;
+mod digest;
+mod dispatch;
+mod feature;
+pub mod frame;
+mod light;
+pub mod material;
+mod optics;
 pub mod options;
+pub mod pattern;
+mod place;
+mod probe;
+pub mod ray;
+mod shade;
+pub mod shape;
+mod surface_pattern;
+mod texture;
+mod tile;
+mod tracer;
+pub mod world;
 
+pub use dispatch::render;
 pub use options::{Crop, Feature, Options, Probe, Progress, RayCounts, Rendered, Silent};
-
-use crate::scene::{Camera, Scene};
-use std::sync::atomic::AtomicBool;
-
-/// The scene as the tracer sees it from one camera: only what this scene requires.
-pub struct World;
-
-impl World {
-    /// Prepares `scene` as seen by `camera`.
-    pub fn build(_scene: &Scene, _camera: &Camera, _options: &Options) -> World {
-        World
-    }
-    /// What the renderer can do, and which of it this scene requires.
-    pub fn features(&self) -> Vec<Feature> {
-        Vec::new()
-    }
-    /// Bytes held for tracing.
-    pub fn memory_bytes(&self) -> usize {
-        0
-    }
-}
-
-/// Traces the picture; `None` where `cancel` was set meanwhile.
-pub fn render(_world: &World, _options: &Options, _progress: &dyn Progress, _cancel: &AtomicBool) -> Option<Rendered> {
-    todo!("replaced by the tracer")
-}
-
-/// What the middle of pixel (x, y) sees; `None` for the background.
-pub fn probe(_world: &World, _options: &Options, _x: u32, _y: u32) -> Option<Probe> {
-    todo!("replaced by the tracer")
-}
+pub use probe::probe;
+pub use world::World;

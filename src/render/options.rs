@@ -52,6 +52,10 @@ impl Options {
             tile: 16, // the best size measured: its rays and hits stay in the first-level cache
         }
     }
+    /// Side of a tile, within what batches have room for.
+    pub fn tile_side(&self) -> u32 {
+        self.tile.clamp(1, 32)
+    }
     /// The part that is made, written out.
     pub fn crop_or_all(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
@@ -82,6 +86,18 @@ pub struct RayCounts {
     pub reflected: u64,
     /// Gone through a surface, straight on or refracted.
     pub transmitted: u64,
+}
+
+impl RayCounts {
+    /// Both together.
+    pub fn plus(self, o: RayCounts) -> RayCounts {
+        RayCounts {
+            camera: self.camera + o.camera,
+            shadow: self.shadow + o.shadow,
+            reflected: self.reflected + o.reflected,
+            transmitted: self.transmitted + o.transmitted,
+        }
+    }
 }
 
 /// A finished picture.

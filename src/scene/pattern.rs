@@ -88,15 +88,14 @@ pub enum PatternKind {
         /// Another arrangement.
         seed: u64,
     },
-    /// A brick wall in x and y, bricks running along x, every other course shifted by half a brick; the same at every z
-    /// through courses of `size.z`.
+    /// A brick wall in x and y, bricks running along x, every other course shifted by half a brick; the same at every z.
     Brick {
         /// Between the bricks.
         mortar: PatternId,
         /// The bricks.
         brick: PatternId,
-        /// Width, height, depth of a brick with its mortar.
-        size: [f64; 3],
+        /// Width and height of a brick with its mortar.
+        size: [f64; 2],
         /// Thickness of the mortar.
         gap: f64,
     },

@@ -1,0 +1,116 @@
+//! Smooth noise on space, the same on every machine: gradient noise (Perlin, "Improving noise", SIGGRAPH 2002) over a
+//! hashed lattice, its sums over octaves, and cellular noise (Worley, SIGGRAPH 1996).
+//!
+//! Written with plain products and sums only, so that it has the same bits with and without fused multiply-add.
+
+use super::hash::KeyedHash;
+
+/// Gradient noise in about −1..1, 0 at lattice points; continuous with two derivatives.
+pub fn gradient_noise(p: [f64; 3], seed: u64) -> f64 {
+    let cell = p.map(f64::floor);
+    let f: [f64; 3] = std::array::from_fn(|i| p[i] - cell[i]);
+    let w = f.map(|x| x * x * x * (x * (x * 6.0 - 15.0) + 10.0));
+    let corner = |dx: usize, dy: usize, dz: usize| {
+        let d = [dx, dy, dz];
+        let h = lattice(std::array::from_fn(|i| cell[i] + d[i] as f64), seed).bits();
+        let v: [f64; 3] = std::array::from_fn(|i| f[i] - d[i] as f64);
+        slope(h, v)
+    };
+    let lerp = |a: f64, b: f64, t: f64| a + t * (b - a);
+    let edge = |dy: usize, dz: usize| lerp(corner(0, dy, dz), corner(1, dy, dz), w[0]);
+    let face = |dz: usize| lerp(edge(0, dz), edge(1, dz), w[1]);
+    lerp(face(0), face(1), w[2])
+}
+
+/// Perlin's twelve gradients towards the middles of a cube's edges, four of them twice.
+fn slope(hash: u64, [x, y, z]: [f64; 3]) -> f64 {
+    let h = hash >> 60;
+    let u = if h < 8 { x } else { y };
+    let v = match h {
+        0..4 => y,
+        12 | 14 => x,
+        _ => z,
+    };
+    (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
+}
+
+/// Sum of `octaves` layers, each of half the size and half the strength; in about −1..1.
+pub fn fractal_noise(p: [f64; 3], octaves: u32, seed: u64) -> f64 {
+    let (mut sum, mut weight, mut total, mut q) = (0.0, 1.0, 0.0, p);
+    for k in 0..octaves {
+        sum += weight * gradient_noise(q, seed.wrapping_add(k as u64));
+        total += weight;
+        weight *= 0.5;
+        q = q.map(|x| x * 2.0);
+    }
+    sum / total
+}
+
+/// The pattern's noise: [`fractal_noise`] brought to 0..1. Gradient noise seldom leaves ±0.7, so it is stretched by that;
+/// what is beyond is cut off.
+pub fn unit_noise(p: [f64; 3], octaves: u32, seed: u64) -> f64 {
+    (0.5 + fractal_noise(p, octaves, seed) * (0.5 / 0.7)).clamp(0.0, 1.0)
+}
+
+/// A displacement, each component in about −1..1, for turbulence.
+pub fn vector_noise(p: [f64; 3], octaves: u32, seed: u64) -> [f64; 3] {
+    [1u64, 2, 3].map(|k| fractal_noise(p, octaves, seed ^ k.wrapping_mul(0x9E37_79B9_7F4A_7C15)))
+}
+
+/// Distance to the nearest of the points scattered one to a unit cell.
+pub fn cell_noise(p: [f64; 3], seed: u64) -> f64 {
+    let cell = p.map(f64::floor);
+    let mut best = f64::INFINITY;
+    for i in 0..27 {
+        let c: [f64; 3] =
+            [cell[0] + (i % 3) as f64 - 1.0, cell[1] + (i / 3 % 3) as f64 - 1.0, cell[2] + (i / 9) as f64 - 1.0];
+        let h = lattice(c, seed);
+        let d: [f64; 3] = std::array::from_fn(|k| c[k] + h.with(k as u64).unit() - p[k]);
+        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if d2 < best {
+            best = d2;
+        }
+    }
+    best.sqrt()
+}
+
+fn lattice(cell: [f64; 3], seed: u64) -> KeyedHash {
+    cell.iter().fold(KeyedHash::new().with(seed), |h, &x| h.with_f64(x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random_point(i: u64) -> [f64; 3] {
+        [1, 2, 3].map(|k| KeyedHash::new().with(i).with(k).unit() * 200.0 - 100.0)
+    }
+
+    #[test]
+    fn smooth_centred_and_zero_on_the_lattice() {
+        assert_eq!(gradient_noise([3.0, -7.0, 0.0], 1), 0.0);
+        let (mut sum, mut steepest, n) = (0.0, 0.0f64, 5_000);
+        for i in 0..n {
+            let p = random_point(i);
+            let v = gradient_noise(p, 7);
+            assert!(v.abs() <= 1.1);
+            sum += v;
+            steepest = steepest.max((gradient_noise([p[0] + 1e-4, p[1], p[2]], 7) - v).abs() / 1e-4);
+        }
+        assert!((sum / n as f64).abs() < 0.02 && steepest < 6.0, "{} {steepest}", sum / n as f64);
+    }
+
+    #[test]
+    fn pattern_noise_uses_its_range() {
+        let values: Vec<f64> = (0..5_000).map(|i| unit_noise(random_point(i), 3, 0)).collect();
+        assert!(values.iter().all(|v| (0.0..=1.0).contains(v)));
+        let low = values.iter().filter(|v| **v < 0.25).count();
+        let high = values.iter().filter(|v| **v > 0.75).count();
+        assert!(low > 100 && high > 100, "{low} {high}");
+    }
+
+    #[test]
+    fn every_point_has_a_cell_point_nearby() {
+        assert!((0..5_000).map(|i| cell_noise(random_point(i), 3)).all(|d| (0.0..1.75).contains(&d)));
+    }
+}

@@ -1,0 +1,66 @@
+//! What the renderer can do, and which of it a scene requires.
+
+use super::material::{Slot, Surfacing};
+use super::options::Feature;
+use super::shape::Kind;
+use super::world::World;
+use crate::diag::Place;
+use crate::scene::{NodeId, Scene};
+
+impl World {
+    /// What the renderer can do, and which of it this scene requires, by the first text that does.
+    pub fn features(&self, scene: &Scene) -> Vec<Feature> {
+        let node_place = |id: NodeId| scene.node(id).place.clone();
+        // The first in the text, not in our numbering.
+        let first = |wanted: &dyn Fn(usize) -> bool| -> Option<usize> {
+            (0..self.primitives.len()).filter(|&i| wanted(i)).min_by_key(|&i| self.origins[i].0)
+        };
+        let surfacing = |i: usize| -> &Surfacing { self.surfacing(i as u32) };
+        let by_shape = |name, what: &str, wanted: &dyn Fn(&Kind) -> bool| {
+            let at = first(&|i| wanted(&self.primitives[i].kind));
+            let count = self.primitives.iter().filter(|p| wanted(&p.kind)).count();
+            feature(name, at.map(|i| node_place(self.origins[i].0)), count > 0, format!("{count} {what}"))
+        };
+        let by_material = |name, detail: &str, wanted: &dyn Fn(&Surfacing) -> bool| {
+            let at = first(&|i| wanted(surfacing(i)));
+            let place = at.map(|i| {
+                let (node, material) = self.origins[i];
+                scene.material(material).place.clone().unwrap_or_else(|| node_place(node))
+            });
+            feature(name, place, at.is_some(), detail.to_owned())
+        };
+        let is_pattern = |s: Slot| matches!(s, Slot::Pattern(_));
+        let light = self.lights.iter().min_by_key(|l| l.node).map(|l| node_place(l.node));
+        let lit = self.primitives.iter().any(|p| self.materials[p.material as usize].lit);
+        let texels = self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>();
+        let linear = self.maps.len();
+        vec![
+            by_shape("spheres", "surfaces", &|k| matches!(k, Kind::Sphere(_))),
+            by_shape("planes", "surfaces, without bounds: tested by every batch", &|k| matches!(k, Kind::Plane)),
+            by_shape("discs", "surfaces", &|k| matches!(k, Kind::Disc { .. })),
+            by_shape("boxes", "surfaces", &|k| matches!(k, Kind::Cuboid(_))),
+            by_shape("cylinders and cones", "surfaces", &|k| matches!(k, Kind::Tube(_))),
+            by_shape("tori", "surfaces", &|k| matches!(k, Kind::Ring(_))),
+            by_shape("triangles", "surfaces", &|k| matches!(k, Kind::Triangle(_))),
+            feature("turned or stretched frames", None, linear > 0, format!("{linear} maps")),
+            feature("shadows", light, lit, format!("{} lights", self.lights.len())),
+            by_material("highlights", "a power for each light", &|m| !m.specular.is_zero()),
+            by_material("mirror reflection", "one ray more for each hit", &|m| !m.reflect.is_zero()),
+            by_material("transparency", "one ray more for each hit, dimmed shadows", &|m| m.lets_through()),
+            by_material("refraction", "Fresnel's formulas and one mirrored ray for each hit", &|m| m.ior.is_some()),
+            by_material("patterns", &format!("{} compiled", self.patterns.nodes.len()), &|m| m.patterned),
+            by_material("patterned transparency", "evaluated at every crossing of a shadow ray", &|m| {
+                is_pattern(m.transmit)
+            }),
+            by_material("pictures", &format!("{} loaded, {texels} bytes", self.patterns.textures.len()), &|m| {
+                m.pictured
+            }),
+            by_material("bumps", "six evaluations of the pattern for each hit", &|m| m.bump.is_some()),
+        ]
+    }
+}
+
+fn feature(name: &'static str, required_by: Option<Place>, in_use: bool, detail: String) -> Feature {
+    let (required_by, detail) = if in_use { (required_by, detail) } else { (None, String::new()) };
+    Feature { name, required_by, in_use, detail }
+}

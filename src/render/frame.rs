@@ -1,0 +1,178 @@
+//! Where a shape stands: the map between the world and the shape's own frame.
+//!
+//! The world's origin is the camera, so a scene moved as a whole gives the same numbers. A centre is kept as hi + lo, and a
+//! ray's origin reaches the shape's frame with its rounding error beside it (TwoSum, TwoProd): the coefficients of a far
+//! shape are then as good as those of a near one.
+
+use super::ray::LocalRay;
+use crate::math::real::{dot, two_prod, two_sum};
+use crate::math::{Affine, Real};
+
+/// Placement of a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// The frame's origin, relative to the camera.
+    pub centre: [f64; 3],
+    /// What `centre` misses of the exact origin.
+    pub centre_lo: [f64; 3],
+    /// The axes.
+    pub axes: Axes,
+}
+
+/// The axes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// The world's axes, renamed: local axis i is world axis (i + k) mod 3. Exact and free.
+    Cyclic(u8),
+    /// Any invertible linear map, by its number in the world's table.
+    Linear(u32),
+}
+
+/// An invertible linear map and its inverse, by rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearMap {
+    /// World vectors to local ones.
+    pub local_from_world: [[f64; 3]; 3],
+    /// Local vectors to world ones.
+    pub world_from_local: [[f64; 3]; 3],
+}
+
+impl Frame {
+    /// The frame whose map to the camera-relative world is `world_from_local`; `add` stores a linear map where one is needed.
+    pub fn new(world_from_local: &Affine, add: impl FnOnce(LinearMap) -> u32) -> Frame {
+        let rows = world_from_local.linear_f64();
+        let cyclic = (0..3u8).find(|&k| rows == cyclic_rows(k));
+        let axes = match cyclic {
+            Some(k) => Axes::Cyclic(k),
+            None => {
+                let inverse = world_from_local.inverse().unwrap_or(Affine::IDENTITY); // a valid scene has no singular map
+                Axes::Linear(add(LinearMap { local_from_world: inverse.linear_f64(), world_from_local: rows }))
+            }
+        };
+        Frame { centre: world_from_local.shift.map(|s| s.hi), centre_lo: world_from_local.shift.map(|s| s.lo), axes }
+    }
+
+    /// The ray in this frame. `AT_EYE` says that every origin is exactly 0, which spares the subtraction.
+    #[inline(always)]
+    pub fn localize<R: Real, const AT_EYE: bool>(&self, maps: &[LinearMap], o: [R; 3], d: [R; 3]) -> LocalRay<R> {
+        let f: [(R, R); 3] = [0, 1, 2].map(|i| {
+            let (c, c_lo) = (R::splat(-self.centre[i]), R::splat(-self.centre_lo[i]));
+            if AT_EYE {
+                return (c, c_lo);
+            }
+            let (hi, lo) = two_sum(o[i], c);
+            (hi, lo + c_lo)
+        });
+        match self.axes {
+            Axes::Cyclic(0) => LocalRay { o: f.map(|x| x.0), o_lo: f.map(|x| x.1), d },
+            Axes::Cyclic(1) => {
+                LocalRay { o: [f[1].0, f[2].0, f[0].0], o_lo: [f[1].1, f[2].1, f[0].1], d: [d[1], d[2], d[0]] }
+            }
+            Axes::Cyclic(_) => {
+                LocalRay { o: [f[2].0, f[0].0, f[1].0], o_lo: [f[2].1, f[0].1, f[1].1], d: [d[2], d[0], d[1]] }
+            }
+            Axes::Linear(m) => {
+                let rows = &maps[m as usize].local_from_world;
+                let mut out = LocalRay { o: d, o_lo: d, d };
+                for (r, row) in rows.iter().enumerate() {
+                    let a: [R; 3] = row.map(R::splat);
+                    let (s0, e0) = two_prod(a[0], f[0].0);
+                    let (p1, e1) = two_prod(a[1], f[1].0);
+                    let (p2, e2) = two_prod(a[2], f[2].0);
+                    let (s1, g1) = two_sum(s0, p1);
+                    let (s2, g2) = two_sum(s1, p2);
+                    out.o[r] = s2;
+                    out.o_lo[r] = ((e0 + e1) + (e2 + g1)) + (g2 + dot(a, f.map(|x| x.1)));
+                    out.d[r] = dot(a, d);
+                }
+                out
+            }
+        }
+    }
+
+    /// A local point in the world.
+    #[inline(always)]
+    pub fn point_to_world<R: Real>(&self, maps: &[LinearMap], p: [R; 3]) -> [R; 3] {
+        let v = self.vector_to_world(maps, p);
+        [0, 1, 2].map(|i| v[i] + R::splat(self.centre[i]))
+    }
+
+    /// A local vector in the world.
+    #[inline(always)]
+    pub fn vector_to_world<R: Real>(&self, maps: &[LinearMap], v: [R; 3]) -> [R; 3] {
+        match self.axes {
+            Axes::Cyclic(0) => v,
+            Axes::Cyclic(1) => [v[2], v[0], v[1]],
+            Axes::Cyclic(_) => [v[1], v[2], v[0]],
+            Axes::Linear(m) => maps[m as usize].world_from_local.map(|row| dot(row.map(R::splat), v)),
+        }
+    }
+
+    /// A local unit normal as a unit normal of the world: normals go by the inverse transposed.
+    #[inline(always)]
+    pub fn normal_to_world<R: Real>(&self, maps: &[LinearMap], n: [R; 3]) -> [R; 3] {
+        match self.axes {
+            Axes::Cyclic(_) => self.vector_to_world(maps, n),
+            Axes::Linear(m) => {
+                let a = &maps[m as usize].local_from_world;
+                let w: [R; 3] = [0, 1, 2].map(|j| dot([0, 1, 2].map(|i| R::splat(a[i][j])), n));
+                let scale = R::one() / dot(w, w).sqrt();
+                w.map(|x| x * scale)
+            }
+        }
+    }
+
+    /// Bound, by component, on how far [`point_to_world`](Frame::point_to_world) of a local point that is itself within
+    /// `error` of the surface can be from the surface, the rounding of one addition that follows included.
+    #[inline(always)]
+    pub fn world_error<R: Real>(&self, maps: &[LinearMap], p: [R; 3], error: [R; 3]) -> [R; 3] {
+        let u = R::UNIT_ROUNDOFF;
+        // Of the large part: three products of the map, the sum with the centre, the addition that follows, one to spare.
+        let gamma = R::splat(6.0 * u);
+        let size = [0, 1, 2].map(|i| gamma.mul_add(p[i].abs(), error[i]));
+        let spread = match self.axes {
+            Axes::Cyclic(_) => self.vector_to_world(maps, size),
+            Axes::Linear(m) => maps[m as usize].world_from_local.map(|row| dot(row.map(|x| R::splat(x.abs())), size)),
+        };
+        // Of the centre: its low part, the sum with it, the addition that follows.
+        [0, 1, 2].map(|i| spread[i] + R::splat(3.0 * u * self.centre[i].abs()))
+    }
+}
+
+fn cyclic_rows(k: u8) -> [[f64; 3]; 3] {
+    // world[(i + k) % 3] = local[i], so row r has its 1 in column (r - k) mod 3.
+    std::array::from_fn(|r| std::array::from_fn(|c| if (c + k as usize) % 3 == r { 1.0 } else { 0.0 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn cyclic_frames_are_inverse_to_themselves() {
+        for k in 0..3u8 {
+            let mut a = Affine::translation(DVec3::new(10.0, 20.0, 30.0));
+            a.linear = cyclic_rows(k).map(|r| r.map(crate::math::Dd::new));
+            let frame = Frame::new(&a, |_| panic!("no table needed"));
+            assert_eq!(frame.axes, Axes::Cyclic(k));
+            let ray = frame.localize::<f64, false>(&[], [11.0, 22.0, 33.0], [1.0, 2.0, 3.0]);
+            assert_eq!(frame.point_to_world(&[], ray.o), [11.0, 22.0, 33.0]);
+            assert_eq!(frame.vector_to_world(&[], ray.d), [1.0, 2.0, 3.0]);
+        }
+    }
+
+    #[test]
+    fn linear_frames_keep_the_low_part() {
+        let a = Affine::translation(DVec3::new(1e15, 0.0, 0.0)).compose(&Affine::rotation(2, 30.0));
+        let mut maps = Vec::new();
+        let frame = Frame::new(&a, |m| {
+            maps.push(m);
+            0
+        });
+        let ray = frame.localize::<f64, false>(&maps, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        let total = (ray.o[0] - maps[0].local_from_world[0][0] * -1e15) + ray.o_lo[0];
+        assert!((total - 0.1 * maps[0].local_from_world[0][0]).abs() < 0.07, "{total}");
+        assert_ne!(ray.o_lo[0], 0.0);
+    }
+}

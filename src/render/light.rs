@@ -1,0 +1,144 @@
+//! How much of a light arrives: shadow rays, and what transparent objects let through.
+
+use super::ray::Own;
+use super::shape::Visit;
+use super::surface_pattern::PatternFrame;
+use super::tracer::Candidates;
+use super::world::World;
+use crate::math::real::{Mask, splat3};
+use crate::math::{Lane, Real};
+use crate::render::pattern::Rows;
+
+/// Room for what a shadow ray needs beside its candidates.
+#[derive(Debug, Default)]
+pub struct Shadow {
+    transparent: Vec<u32>,
+    spaces: Vec<Rows>,
+}
+
+/// The share of light, by channel, that reaches `o` from `distance` away along the unit vector `l`, in the lanes of `active`.
+/// The rays start on `part` of primitive `source`. Every crossing of a transparent surface dims by its transmission; the
+/// factors are multiplied in the order of the primitives' numbers, so that no order of tests changes a bit.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+pub fn occlusion<L: Lane>(
+    world: &World,
+    occluders: &Candidates,
+    source: u32,
+    part: L,
+    o: [L; 3],
+    l: [L; 3],
+    distance: L,
+    active: L::Mask,
+    scratch: &mut Shadow,
+) -> [L; 3] {
+    let tables = world.tables();
+    let own = |k: u32| Some(Own { here: L::Mask::splat(k == source), part });
+    let mut seen = [L::one(); 3];
+    // Opaque ones first: they need no order.
+    let mut open = active;
+    scratch.transparent.clear();
+    let transparent = &mut scratch.transparent;
+    let mut test = |k: u32, open: L::Mask| -> L::Mask {
+        match world.constant_transmission(k) {
+            Some([0.0, 0.0, 0.0]) => {
+                let mut blocked = Blocked { distance, blocked: L::Mask::splat(false) };
+                world.primitives[k as usize].crossings::<L, false>(tables, o, l, own(k), &mut blocked);
+                open & !blocked.blocked
+            }
+            Some([1.0, 1.0, 1.0]) => open,
+            _ => {
+                transparent.push(k);
+                open
+            }
+        }
+    };
+    for &k in &occluders.ids {
+        open = test(k, open);
+        if !open.any() {
+            return [L::zero(); 3];
+        }
+    }
+    if occluders.tree {
+        let reach = |open: L::Mask| L::select(open, distance, -L::one());
+        world.bvh.traverse(o, l, reach(open), |k| {
+            open = test(k, open);
+            reach(open)
+        });
+    }
+    let zero = L::zero();
+    seen = seen.map(|x| L::select(open, x, zero));
+    if scratch.transparent.is_empty() || !open.any() {
+        return seen;
+    }
+    scratch.transparent.sort_unstable();
+    for &k in &scratch.transparent {
+        let primitive = &world.primitives[k as usize];
+        match world.constant_transmission(k) {
+            Some(factor) => {
+                let mut dimmed = Dimmed { distance, factor: splat3(factor), seen };
+                primitive.crossings::<L, false>(tables, o, l, own(k), &mut dimmed);
+                seen = dimmed.seen;
+            }
+            None => {
+                let mut met = Met { distance, crossings: [(zero, zero, L::Mask::splat(false)); 4], n: 0 };
+                primitive.crossings::<L, false>(tables, o, l, own(k), &mut met);
+                let frame = PatternFrame::new(world, primitive, world.surfacing(k), &mut scratch.spaces);
+                for (t, part, m) in met.crossings.into_iter().take(met.n) {
+                    if m.any() {
+                        let surface = primitive.surface::<L, false>(tables, o, l, t, part);
+                        let at = frame.point(&scratch.spaces, surface.local, surface.n);
+                        let factor = frame.transmission(world, &at);
+                        seen = [0, 1, 2].map(|c| L::select(m, seen[c] * factor[c], seen[c]));
+                    }
+                }
+            }
+        }
+    }
+    seen
+}
+
+/// Whether anything lies between a point and the light.
+struct Blocked<R: Real> {
+    distance: R,
+    blocked: R::Mask,
+}
+
+impl<R: Real> Visit<R> for Blocked<R> {
+    #[inline(always)]
+    fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
+        self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));
+    }
+}
+
+/// Dims by the same factor at every crossing.
+struct Dimmed<R> {
+    distance: R,
+    factor: [R; 3],
+    seen: [R; 3],
+}
+
+impl<R: Real> Visit<R> for Dimmed<R> {
+    #[inline(always)]
+    fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
+        let m = valid & R::zero().lt(t) & t.lt(self.distance);
+        self.seen = [0, 1, 2].map(|c| R::select(m, self.seen[c] * self.factor[c], self.seen[c]));
+    }
+}
+
+/// Remembers the crossings in between: at most four, a torus'.
+struct Met<R: Real> {
+    distance: R,
+    crossings: [(R, R, R::Mask); 4],
+    n: usize,
+}
+
+impl<R: Real> Visit<R> for Met<R> {
+    #[inline(always)]
+    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
+        if self.n < self.crossings.len() {
+            self.crossings[self.n] = (t, part, valid & R::zero().lt(t) & t.lt(self.distance));
+            self.n += 1;
+        }
+    }
+}

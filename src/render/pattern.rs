@@ -1,0 +1,347 @@
+//! Patterns as the tracer evaluates them: constants folded, only what a live material shows.
+//!
+//! A pattern's space is reached from the shape's own frame by one composed map, so that the coordinate of a face that lies
+//! on a cell boundary is the same number all over the face: no speckle. Below a turbulence, which bends space, maps are
+//! applied one after another.
+//!
+//! Everything here uses plain products and sums: the same bits whether or not it is compiled with fused operations.
+
+use super::texture::{Edge, Texture};
+use crate::math::fun;
+use crate::math::noise::{cell_noise, unit_noise, vector_noise};
+use crate::math::real::{Mask, Real, select3, splat3};
+use crate::scene::{Filter, Mapping};
+
+/// The patterns of a world.
+#[derive(Clone, Debug, Default)]
+pub struct PatternTable {
+    /// Children stand before their parents.
+    pub nodes: Vec<PatternNode>,
+    /// From the space in which a shape is made to a pattern's own. Number 0 changes nothing.
+    pub spaces: Vec<crate::math::Affine>,
+    /// The pictures.
+    pub textures: Vec<Texture>,
+}
+
+/// Rows of a map: three factors and an addend each.
+pub type Rows = [[f64; 4]; 3];
+
+/// A pattern of the world. `a` and `b` are as in [`PatternKind`](crate::scene::PatternKind).
+#[derive(Clone, Debug)]
+pub enum PatternNode {
+    /// The same everywhere.
+    Constant([f64; 3]),
+    /// Solid checker.
+    Checker(u32, u32, f64),
+    /// Stripes across an axis.
+    Stripes(u32, u32, u8, f64),
+    /// Shells around an axis.
+    Rings(u32, u32, u8, f64),
+    /// From `a` to `b` along an axis.
+    Gradient(u32, u32, u8, f64),
+    /// Noise: octaves and seed.
+    Noise(u32, u32, u32, u64),
+    /// Cells: seed.
+    Cells(u32, u32, u64),
+    /// Mortar, brick, size, gap.
+    Brick(u32, u32, [f64; 2], f64),
+    /// A picture.
+    Image {
+        /// By number in [`PatternTable::textures`].
+        texture: u32,
+        /// How it is laid on.
+        mapping: Mapping,
+        /// How it is read.
+        filter: Filter,
+        /// Linear part of the map from the space in which the shape is made to the pattern's.
+        turn: [[f64; 3]; 3],
+        /// The same for normals.
+        turn_normal: [[f64; 3]; 3],
+    },
+    /// a, b, share of b.
+    Mix(u32, u32, u32),
+    /// Stops and position.
+    Blend(Vec<u32>, u32),
+    /// A pattern in a space of [`PatternTable::spaces`].
+    InSpace(u32, u32),
+    /// A pattern in a space given from the one around it.
+    Mapped(u32, Box<Rows>),
+    /// Child, amount, octaves, seed.
+    Turbulence(u32, f64, u32, u64),
+    /// Sum.
+    Add(u32, u32),
+    /// Product.
+    Multiply(u32, u32),
+}
+
+impl PatternNode {
+    /// Calls `visit` with every pattern that this one is made of.
+    pub fn for_each_child(&self, mut visit: impl FnMut(u32)) {
+        use PatternNode::*;
+        match self {
+            Constant(_) | Image { .. } => {}
+            Checker(a, b, _) | Noise(a, b, _, _) | Cells(a, b, _) | Brick(a, b, _, _) | Add(a, b) | Multiply(a, b) => {
+                visit(*a);
+                visit(*b);
+            }
+            Stripes(a, b, ..) | Rings(a, b, ..) | Gradient(a, b, ..) => {
+                visit(*a);
+                visit(*b);
+            }
+            Mix(a, b, by) => {
+                visit(*a);
+                visit(*b);
+                visit(*by);
+            }
+            Blend(stops, by) => {
+                stops.iter().for_each(|s| visit(*s));
+                visit(*by);
+            }
+            InSpace(child, _) | Mapped(child, _) | Turbulence(child, ..) => visit(*child),
+        }
+    }
+}
+
+/// A point at which patterns are evaluated.
+#[derive(Clone, Copy)]
+pub struct PatternPoint<'a, R> {
+    /// The point in the space of the pattern being evaluated.
+    pub p: [R; 3],
+    /// The point in the shape's own frame.
+    pub local: [R; 3],
+    /// From there to every space of the table.
+    pub spaces: &'a [Rows],
+    /// Unit normal in the space in which the shape is made; only set where a picture asks.
+    pub normal: [R; 3],
+    /// From the shape's centre to the point, in the space in which it is made.
+    pub from_centre: [R; 3],
+    /// Half the shape's height there.
+    pub half_height: f64,
+}
+
+/// The image of a point.
+#[inline(always)]
+pub fn apply<R: Real>(rows: &Rows, p: [R; 3]) -> [R; 3] {
+    rows.map(|[x, y, z, w]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
+}
+
+fn apply_linear<R: Real>(rows: &[[f64; 3]; 3], p: [R; 3]) -> [R; 3] {
+    rows.map(|[x, y, z]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + R::splat(z) * p[2])
+}
+
+impl PatternTable {
+    /// The value of pattern `id`. Recursion is as deep as patterns nest, which the language limits.
+    pub fn eval<R: Real>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+        let p = at.p;
+        match &self.nodes[id as usize] {
+            PatternNode::Constant(c) => splat3(*c),
+            PatternNode::Checker(a, b, size) => {
+                let s = R::splat(*size);
+                self.by_parity(*a, *b, (p[0] / s).floor() + (p[1] / s).floor() + (p[2] / s).floor(), at)
+            }
+            PatternNode::Stripes(a, b, axis, size) => {
+                self.by_parity(*a, *b, (p[*axis as usize] / R::splat(*size)).floor(), at)
+            }
+            PatternNode::Rings(a, b, axis, size) => {
+                let (i, j) = ((*axis as usize + 1) % 3, (*axis as usize + 2) % 3);
+                let rho = (p[i] * p[i] + p[j] * p[j]).sqrt();
+                self.by_parity(*a, *b, (rho / R::splat(*size)).floor(), at)
+            }
+            PatternNode::Gradient(a, b, axis, size) => {
+                let s = clamp01(p[*axis as usize] / R::splat(*size));
+                self.lerp(*a, *b, [s; 3], at)
+            }
+            PatternNode::Noise(a, b, octaves, seed) => {
+                let [s] = R::each(p, |p| [unit_noise(p, *octaves, *seed)]);
+                self.lerp(*a, *b, [s; 3], at)
+            }
+            PatternNode::Cells(a, b, seed) => {
+                let [s] = R::each(p, |p| [cell_noise(p, *seed).clamp(0.0, 1.0)]);
+                self.lerp(*a, *b, [s; 3], at)
+            }
+            PatternNode::Brick(mortar, brick, size, gap) => {
+                let [in_brick] = R::each(p, |p| [is_brick(p, *size, *gap)]); // 1 or 0
+                self.choose(in_brick.same(R::zero()), *mortar, *brick, at)
+            }
+            PatternNode::Image { texture, mapping, filter, turn, turn_normal } => {
+                let texture = &self.textures[*texture as usize];
+                let read = |uv: [f64; 2], edges| texture.at(uv[0], uv[1], *filter, edges);
+                match mapping {
+                    Mapping::Planar { axis } => R::each(p, |p| read(planar(p, *axis), [Edge::Repeat; 2])),
+                    Mapping::Normal => {
+                        R::each(apply_linear(turn_normal, at.normal), |n| read(by_normal(n), [Edge::Clamp; 2]))
+                    }
+                    Mapping::Spherical => {
+                        R::each(apply_linear(turn, at.from_centre), |v| read(spherical(v), [Edge::Repeat, Edge::Clamp]))
+                    }
+                    Mapping::Cylindrical => R::each(apply_linear(turn, at.from_centre), |v| {
+                        read([longitude(v), 0.5 + 0.5 * v[1] / at.half_height], [Edge::Repeat, Edge::Clamp])
+                    }),
+                }
+            }
+            PatternNode::Mix(a, b, by) => {
+                let share = self.eval(*by, at);
+                self.lerp(*a, *b, share, at)
+            }
+            PatternNode::Blend(stops, by) => self.blend(stops, self.eval(*by, at)[0], at),
+            PatternNode::InSpace(child, space) => {
+                let p = apply(&at.spaces[*space as usize], at.local);
+                self.eval(*child, &PatternPoint { p, ..*at })
+            }
+            PatternNode::Mapped(child, rows) => self.eval(*child, &PatternPoint { p: apply(rows, p), ..*at }),
+            PatternNode::Turbulence(child, amount, octaves, seed) => {
+                let moved = R::each(p, |p| {
+                    let v = vector_noise(p, *octaves, *seed);
+                    std::array::from_fn(|i| p[i] + amount * v[i])
+                });
+                self.eval(*child, &PatternPoint { p: moved, ..*at })
+            }
+            PatternNode::Add(a, b) => {
+                let (x, y) = (self.eval(*a, at), self.eval(*b, at));
+                [0, 1, 2].map(|i| x[i] + y[i])
+            }
+            PatternNode::Multiply(a, b) => {
+                let (x, y) = (self.eval(*a, at), self.eval(*b, at));
+                [0, 1, 2].map(|i| x[i] * y[i])
+            }
+        }
+    }
+
+    fn by_parity<R: Real>(&self, a: u32, b: u32, n: R, at: &PatternPoint<'_, R>) -> [R; 3] {
+        let half = n * R::splat(0.5);
+        self.choose(half.floor().same(half), a, b, at)
+    }
+
+    /// `a` where `m`, else `b`; what no lane needs isn't evaluated.
+    fn choose<R: Real>(&self, m: R::Mask, a: u32, b: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+        if !m.any() {
+            self.eval(b, at)
+        } else if !(!m).any() {
+            self.eval(a, at)
+        } else {
+            select3(m, self.eval(a, at), self.eval(b, at))
+        }
+    }
+
+    fn lerp<R: Real>(&self, a: u32, b: u32, s: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+        let (a, b) = (self.eval(a, at), self.eval(b, at));
+        [0, 1, 2].map(|i| (R::one() - s[i]) * a[i] + s[i] * b[i])
+    }
+
+    fn blend<R: Real>(&self, stops: &[u32], by: R, at: &PatternPoint<'_, R>) -> [R; 3] {
+        let last = stops.len() - 1;
+        let x = clamp01(by) * R::splat(last as f64);
+        let mut out = self.eval(stops[0], at);
+        for (k, &stop) in stops.iter().enumerate().skip(1) {
+            let s = x - R::splat(k as f64 - 1.0);
+            let here = R::zero().lt(s);
+            if !here.any() {
+                break;
+            }
+            let (s, c) = (s.min(R::one()), self.eval(stop, at));
+            out = select3(here, [0, 1, 2].map(|i| (R::one() - s) * out[i] + s * c[i]), out);
+        }
+        out
+    }
+}
+
+fn clamp01<R: Real>(x: R) -> R {
+    x.max(R::zero()).min(R::one())
+}
+
+/// 1 within a brick, 0 in the mortar around it: half the gap on each side.
+fn is_brick(p: [f64; 3], size: [f64; 2], gap: f64) -> f64 {
+    let course = (p[1] / size[1]).floor();
+    let shift = if (course * 0.5).floor() == course * 0.5 { 0.0 } else { 0.5 * size[0] };
+    let within = |x: f64, s: f64| {
+        let f = x - (x / s).floor() * s;
+        f >= 0.5 * gap && f <= s - 0.5 * gap
+    };
+    if within(p[0] + shift, size[0]) && within(p[1], size[1]) { 1.0 } else { 0.0 }
+}
+
+/// u = asin(n.x)/π + ½, v = asin(n.y)/π + ½; clamped before asin, because a unit normal can be an ulp too long.
+fn by_normal(n: [f64; 3]) -> [f64; 2] {
+    let f = |x: f64| fun::asin(x.clamp(-1.0, 1.0)) * std::f64::consts::FRAC_1_PI + 0.5;
+    [f(n[0]), f(n[1])]
+}
+
+/// The share of a turn around y, ½ at +z, growing towards +x.
+fn longitude(v: [f64; 3]) -> f64 {
+    0.5 + fun::atan2(v[0], v[2]) * (0.5 * std::f64::consts::FRAC_1_PI)
+}
+
+fn spherical(v: [f64; 3]) -> [f64; 2] {
+    let len = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    let sine = if len > 0.0 { (v[1] / len).clamp(-1.0, 1.0) } else { 0.0 };
+    [longitude(v), 0.5 + fun::asin(sine) * std::f64::consts::FRAC_1_PI]
+}
+
+/// The two coordinates across the axis, so that the picture is upright and not mirrored, seen from the axis' positive end.
+fn planar(p: [f64; 3], axis: u8) -> [f64; 2] {
+    match axis {
+        0 => [-p[2], p[1]],
+        1 => [p[0], -p[2]],
+        _ => [p[0], p[1]],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(nodes: Vec<PatternNode>, p: [f64; 3]) -> f64 {
+        let id = nodes.len() as u32 - 1;
+        let table = PatternTable { nodes, ..PatternTable::default() };
+        let at = PatternPoint { p, local: p, spaces: &[], normal: p, from_centre: p, half_height: 1.0 };
+        table.eval::<f64>(id, &at)[0]
+    }
+
+    fn two(kind: PatternNode) -> Vec<PatternNode> {
+        vec![PatternNode::Constant([0.0; 3]), PatternNode::Constant([1.0; 3]), kind]
+    }
+
+    #[test]
+    fn parity_is_by_floor_so_no_cell_is_double_width() {
+        let checker = |x: f64| value(two(PatternNode::Checker(0, 1, 2.0)), [x, 0.5, 0.5]);
+        assert_eq!([-3.0, -1.0, 1.0, 3.0].map(checker), [0.0, 1.0, 0.0, 1.0]);
+        let stripes = |y: f64| value(two(PatternNode::Stripes(0, 1, 1, 1.0)), [9.0, y, 9.0]);
+        assert_eq!([-1.5, -0.5, 0.5, 1.5].map(stripes), [0.0, 1.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn blends_meet_their_stops() {
+        let nodes = |x: f64| {
+            vec![
+                PatternNode::Constant([0.0; 3]),
+                PatternNode::Constant([1.0; 3]),
+                PatternNode::Constant([5.0; 3]),
+                PatternNode::Constant([x; 3]),
+                PatternNode::Blend(vec![0, 1, 2], 3),
+            ]
+        };
+        for (x, expected) in [(-1.0, 0.0), (0.25, 0.5), (0.5, 1.0), (0.75, 3.0), (2.0, 5.0)] {
+            assert_eq!(value(nodes(x), [0.0; 3]), expected);
+        }
+    }
+
+    #[test]
+    fn bricks_are_laid_in_running_bond() {
+        let wall = |x: f64, y: f64| value(two(PatternNode::Brick(0, 1, [2.0, 1.0], 0.1)), [x, y, 0.5]);
+        assert_eq!(wall(1.0, 0.5), 1.0);
+        assert_eq!(wall(0.02, 0.5), 0.0, "joint");
+        assert_eq!(wall(0.02, 1.5), 1.0, "the next course is shifted by half a brick");
+        assert_eq!(wall(1.02, 1.5), 0.0);
+        assert_eq!(wall(1.0, 0.02), 0.0, "bed");
+    }
+
+    #[test]
+    fn mappings_have_their_poles_and_seams_where_stated() {
+        assert_eq!(by_normal([0.0, 0.0, 1.0]), [0.5, 0.5]);
+        assert_eq!(by_normal([1.0 + 1e-16, 0.0, 0.0]), [1.0, 0.5]);
+        assert_eq!(spherical([0.0, 0.0, 2.0]), [0.5, 0.5]);
+        assert_eq!(spherical([0.0, 3.0, 0.0])[1], 1.0);
+        assert_eq!(spherical([3.0, 0.0, 0.0]), [0.75, 0.5]);
+        assert_eq!(spherical([0.0; 3])[1], 0.5);
+    }
+}

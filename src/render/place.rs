@@ -1,0 +1,256 @@
+//! Puts a shape of the scene into the world: finds its frame, its size there, its box, and the way back to the space in
+//! which it was made.
+
+use super::bounds::Bounds;
+use super::shape::{Kind, Ring, Tube};
+use crate::math::{Affine, Dd};
+use crate::scene::Shape;
+use glam::DVec3;
+
+/// A shape in its frame, before it has a number.
+pub struct Placed {
+    /// What it is.
+    pub form: Form,
+    /// From the shape's frame to the camera-relative world.
+    pub world_from_local: Affine,
+    /// From the shape's frame (for triangles: from (β, 0, γ)) to the space in which it was made.
+    pub made_from_local: Affine,
+    /// Its extent in its frame: centre, half size. `None` for what has no end.
+    pub extent: Option<[[f64; 3]; 2]>,
+}
+
+/// What a placed shape is: a kind with a frame, or a triangle whose corners stand in the world.
+pub enum Form {
+    /// In its frame.
+    Framed(Kind),
+    /// Corners in the world, normal and shading normals there.
+    Triangle([[f64; 3]; 3], [f64; 3], Option<[[f64; 3]; 3]>),
+}
+
+/// Relative size below which an entry of a map is the rounding error of a rotation: 512 roundings.
+pub const RESIDUE: f64 = 512.0 * f64::EPSILON;
+
+/// Puts `shape` into the world; a tetrahedron gives four triangles.
+pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
+    match shape {
+        Shape::Sphere { at, r } => vec![sphere(*at, *r, world_from_object)],
+        Shape::Plane { through, normal } => {
+            vec![framed(Kind::Plane, axis_frame(*through, *normal), None, world_from_object)]
+        }
+        Shape::Disc { at, normal, r, hole } => {
+            let kind = Kind::Disc { r: *r, hole: *hole };
+            vec![framed(kind, axis_frame(*at, *normal), Some([[0.0; 3], [*r, 0.0, *r]]), world_from_object)]
+        }
+        Shape::Box { from, to } => {
+            let half = ((*to - *from) * 0.5).to_array();
+            let centre = Affine::translation(*from + (*to - *from) * 0.5);
+            vec![framed(Kind::Cuboid(half), centre, Some([[0.0; 3], half]), world_from_object)]
+        }
+        Shape::Cylinder { from, to, r, caps } => vec![tube(*from, *to, *r, *r, *caps, world_from_object)],
+        Shape::Cone { from, to, r, top, caps } => vec![tube(*from, *to, *r, *top, *caps, world_from_object)],
+        Shape::Torus { at, r, tube, axis } => {
+            let out = r + tube;
+            let kind = Kind::Ring(Ring::new(*r, *tube));
+            vec![framed(kind, axis_frame(*at, *axis), Some([[0.0; 3], [out, *tube, out]]), world_from_object)]
+        }
+        Shape::Triangle { points, normals } => {
+            vec![triangle(*points, *normals, world_from_object)]
+        }
+        Shape::Tetrahedron { points: [a, b, c, d] } => {
+            // Corners of each face go round counter-clockwise seen from outside.
+            let outward = (*b - *a).cross(*c - *a).dot(*d - *a) < 0.0;
+            let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
+            faces
+                .into_iter()
+                .map(|[p, q, r]| {
+                    let corners = if outward { [*p, *q, *r] } else { [*p, *r, *q] };
+                    triangle(corners, None, world_from_object)
+                })
+                .collect()
+        }
+    }
+}
+
+fn sphere(at: DVec3, r: f64, world_from_object: &Affine) -> Placed {
+    let centre = Affine::translation(at);
+    let Some(s) = similarity(world_from_object) else {
+        return framed(Kind::Sphere(r), centre, Some([[0.0; 3], [r; 3]]), world_from_object);
+    };
+    // A turned sphere is a sphere: only its patterns turn.
+    let shift = world_from_object.compose(&centre).shift;
+    let turn = Affine { shift: [Dd::default(); 3], ..*world_from_object };
+    let back = turn.inverse().unwrap_or(Affine::IDENTITY);
+    Placed {
+        form: Form::Framed(Kind::Sphere(r * s)),
+        world_from_local: Affine { shift, ..Affine::IDENTITY },
+        made_from_local: if turn.is_translation() { centre } else { centre.compose(&back) },
+        extent: Some([[0.0; 3], [r * s; 3]]),
+    }
+}
+
+fn tube(from: DVec3, to: DVec3, r: f64, top: f64, caps: bool, world_from_object: &Affine) -> Placed {
+    // Along a falling axis the shape is turned over, which spares the frame its signs.
+    let d = to - from;
+    let falls = d.x + d.y + d.z < 0.0 && d.to_array().iter().filter(|x| **x != 0.0).count() == 1;
+    let (from, to, r, top) = if falls { (to, from, top, r) } else { (from, to, r, top) };
+    let height = length(to - from);
+    let slope = (top - r) / height;
+    // A pointed cone is measured from its apex, where its radius is small: anything else would make it a difference.
+    let (origin, radius, bottom, upper) = if top == 0.0 { (to, 0.0, -height, 0.0) } else { (from, r, 0.0, height) };
+    let kind = Kind::Tube(Tube { radius, slope, bottom, top: upper, caps });
+    let widest = if r > top { r } else { top };
+    let extent = [[0.0, 0.5 * (bottom + upper), 0.0], [widest, 0.5 * height, widest]];
+    framed(kind, axis_frame(origin, to - from), Some(extent), world_from_object)
+}
+
+fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, world: &Affine) -> Placed {
+    let world_from_local = world.compose(&object_from_local);
+    let Some(s) = similarity(world) else {
+        return Placed { form: Form::Framed(kind), world_from_local, made_from_local: object_from_local, extent };
+    };
+    // Sizes take the scale, so that the frame is a rotation, often none at all.
+    let unit = Affine::scaling(DVec3::splat(s)).inverse().unwrap_or(Affine::IDENTITY);
+    let grow = |v: [f64; 3]| v.map(|x| x * s);
+    let kind = match kind {
+        Kind::Sphere(r) => Kind::Sphere(r * s),
+        Kind::Plane => Kind::Plane,
+        Kind::Disc { r, hole } => Kind::Disc { r: r * s, hole: hole * s },
+        Kind::Cuboid(half) => Kind::Cuboid(grow(half)),
+        Kind::Tube(t) => Kind::Tube(Tube { radius: t.radius * s, bottom: t.bottom * s, top: t.top * s, ..t }),
+        Kind::Ring(ring) => Kind::Ring(Ring::new(ring.r / ring.scale * s, ring.tube / ring.scale * s)),
+        Kind::Triangle(_) => kind,
+    };
+    Placed {
+        form: Form::Framed(kind),
+        world_from_local: world_from_local.compose(&unit),
+        made_from_local: object_from_local.compose(&unit),
+        extent: extent.map(|e| e.map(grow)),
+    }
+}
+
+fn triangle(points: [DVec3; 3], normals: Option<[DVec3; 3]>, world: &Affine) -> Placed {
+    let v = points.map(|p| world.apply(p).to_array());
+    let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
+    let back = world.inverse().unwrap_or(Affine::IDENTITY).linear_f64();
+    // Normals go by the inverse transposed, so a mirrored shape keeps its outside.
+    let to_world = |n: DVec3| {
+        let n = unit(n).to_array();
+        unit(DVec3::from_array(std::array::from_fn(|c| (0..3).map(|r| back[r][c] * n[r]).sum()))).to_array()
+    };
+    let mut made = Affine::translation(points[0]);
+    for (r, (x, y)) in e1.to_array().into_iter().zip(e2.to_array()).enumerate() {
+        made.linear[r] = [Dd::new(x), Dd::new(0.0), Dd::new(y)];
+    }
+    let scale = largest(e1).max(largest(e2));
+    let n = (e1 / scale).cross(e2 / scale);
+    Placed {
+        form: Form::Triangle(v, to_world(n), normals.map(|ns| ns.map(to_world))),
+        world_from_local: Affine::IDENTITY,
+        made_from_local: made,
+        extent: None,
+    }
+}
+
+/// The box of a framed shape's extent in the world.
+pub fn world_bounds(extent: [[f64; 3]; 2], world_from_local: &Affine) -> Bounds {
+    let [centre, half] = extent;
+    let m = world_from_local.linear_f64();
+    let c = world_from_local.apply(DVec3::from_array(centre)).to_array();
+    Bounds::around(c, std::array::from_fn(|r| (0..3).map(|k| m[r][k].abs() * half[k]).sum()))
+}
+
+/// The factor by which a map scales all lengths, or `None` where it stretches.
+fn similarity(map: &Affine) -> Option<f64> {
+    let m = map.linear_f64();
+    let column = |a: usize, b: usize| (0..3).map(|r| m[r][a] * m[r][b]).sum::<f64>();
+    let s2 = column(0, 0);
+    let close = |x: f64, y: f64| (x - y).abs() <= RESIDUE * s2;
+    let even = close(column(1, 1), s2) && close(column(2, 2), s2);
+    let square = [(0, 1), (0, 2), (1, 2)].into_iter().all(|(a, b)| close(column(a, b), 0.0));
+    let s = s2.sqrt();
+    (even && square).then_some(if close(s2, 1.0) && s2 != 1.0 { 1.0 } else { s })
+}
+
+/// A right-handed frame at `origin` whose y axis points along `axis`; the world's own axes where one of them does.
+fn axis_frame(origin: DVec3, axis: DVec3) -> Affine {
+    let v = axis.to_array();
+    let mut frame = Affine::translation(origin);
+    let along: Vec<usize> = (0..3).filter(|&i| v[i] != 0.0).collect();
+    let (x, y, z) = match along[..] {
+        [i] => {
+            let sign = v[i].signum();
+            let e = |k: usize| DVec3::from_array(std::array::from_fn(|j| if j == k % 3 { 1.0 } else { 0.0 }));
+            // Cyclic for a rising axis; half a turn about x for a falling one.
+            (e(i + 2), e(i) * sign, e(i + 1) * sign)
+        }
+        _ => {
+            let y = unit(axis);
+            let a = y.abs();
+            let least = if a.x <= a.y && a.x <= a.z {
+                DVec3::X
+            } else if a.y <= a.z {
+                DVec3::Y
+            } else {
+                DVec3::Z
+            };
+            let x = unit(least.cross(y));
+            (x, y, x.cross(y))
+        }
+    };
+    for (r, row) in frame.linear.iter_mut().enumerate() {
+        *row = [Dd::new(x[r]), Dd::new(y[r]), Dd::new(z[r])];
+    }
+    frame
+}
+
+/// Unit vector along `v`, which isn't 0; scaled first, so that no square leaves the range.
+pub fn unit(v: DVec3) -> DVec3 {
+    let s = v / largest(v);
+    s / s.length()
+}
+
+fn length(v: DVec3) -> f64 {
+    let m = largest(v);
+    (v / m).length() * m
+}
+
+fn largest(v: DVec3) -> f64 {
+    v.abs().max_element()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axis_frames_are_right_handed_rotations() {
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::Y, -DVec3::X, DVec3::new(1.0, -2.0, 3.0)] {
+            let f = axis_frame(DVec3::ZERO, axis);
+            let (x, y, z) = (f.apply(DVec3::X), f.apply(DVec3::Y), f.apply(DVec3::Z));
+            assert!(y.distance(axis.normalize()) < 1e-15);
+            assert!(x.cross(y).distance(z) < 1e-15 && (x.length() - 1.0).abs() < 1e-15, "{axis}");
+        }
+    }
+
+    #[test]
+    fn scaling_goes_into_the_size_and_turning_into_the_frame() {
+        let world = Affine::rotation(2, 90.0).compose(&Affine::scaling(DVec3::splat(3.0)));
+        let placed = &place(&Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Y, r: 2.0, caps: true }, &world)[0];
+        let Form::Framed(Kind::Tube(t)) = &placed.form else { panic!() };
+        assert_eq!((t.radius, t.top), (6.0, 3.0));
+        assert_eq!(placed.made_from_local.apply(DVec3::new(0.0, 3.0, 0.0)), DVec3::Y);
+        assert_eq!(placed.world_from_local.apply(DVec3::new(0.0, 3.0, 0.0)), DVec3::new(-3.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn tetrahedron_faces_look_outwards_whatever_the_order_of_corners() {
+        let p = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        for points in [p, [p[1], p[0], p[2], p[3]]] {
+            for face in place(&Shape::Tetrahedron { points }, &Affine::IDENTITY) {
+                let Form::Triangle(v, n, _) = face.form else { panic!() };
+                let from_middle = DVec3::from_array(v[0]) - DVec3::splat(0.2);
+                assert!(from_middle.dot(DVec3::from_array(n)) > 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Cylinder, cone and frustum: the solid that a straight profile makes around the y axis, between two planes across it.
+//!
+//! A ray's stay inside is the overlap of its stay inside the quadric and between the planes. Which crossing is side and which
+//! cap is read from that overlap by comparison alone, so side and cap can't leave a gap between them. Open shapes are
+//! the same with the caps left out.
+
+use super::quadric::{Quadric, roots};
+use super::{BOTTOM, Point, SIDE, TOP, Visit};
+use crate::math::Real;
+use crate::render::ray::{LocalRay, Own};
+
+/// A profile: at height y the radius is `radius + slope·y`, for y from `bottom` to `top`. Nowhere in between negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tube {
+    /// Radius at y = 0: the frame's origin is the apex of a pointed cone (then 0), else the centre of the bottom.
+    pub radius: f64,
+    /// Growth of the radius with y; 0 for a cylinder.
+    pub slope: f64,
+    /// Lower end.
+    pub bottom: f64,
+    /// Upper end.
+    pub top: f64,
+    /// Whether the ends are closed.
+    pub caps: bool,
+}
+
+/// x² + z² − (radius + slope·y)².
+struct Profile<R> {
+    radius: R,
+    slope: R,
+}
+
+impl<R: Real> Quadric<R> for Profile<R> {
+    #[inline(always)]
+    fn coefficients(&self, m: [R; 3], d: [R; 3]) -> (R, R, R) {
+        let w = self.slope.mul_add(m[1], self.radius);
+        let s = self.slope * d[1];
+        let a = d[0].mul_add(d[0], d[2].mul_sub(d[2], s * s));
+        let b = m[0].mul_add(d[0], m[2].mul_sub(d[2], w * s));
+        let c = m[0].mul_add(m[0], m[2].mul_sub(m[2], w * w));
+        (a, b, c)
+    }
+}
+
+/// Calls `visit(t, part, valid)` for the way in and the way out.
+#[inline(always)]
+pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+    let (zero, infinity) = (R::zero(), R::splat(f64::INFINITY));
+    let x = roots(ray, &Profile { radius: R::splat(tube.radius), slope: R::splat(tube.slope) });
+
+    // Between the planes.
+    let (o, dy) = (ray.o[1], ray.d[1]);
+    let (bottom, top) = (R::splat(tube.bottom), R::splat(tube.top));
+    let to_bottom = (bottom - o) - ray.o_lo[1];
+    let to_top = (top - o) - ray.o_lo[1];
+    let up = zero.lt(dy);
+    let level = dy.same(zero);
+    let level_inside = to_bottom.le(zero) & zero.le(to_top);
+    let (tb, tt) = (to_bottom / dy, to_top / dy);
+    let slab_in = R::select(level, -infinity, R::select(up, tb, tt));
+    let slab_out = R::select(level, infinity, R::select(up, tt, tb));
+
+    // Inside the quadric: between the roots, or, where the form falls off in both directions, on the half-line that lies
+    // on our side of the apex: the one that overlaps the slab.
+    let steep = x.a.lt(zero);
+    let before = (slab_out - x.hi).lt(x.lo - slab_in);
+    let side_in = R::select(steep, R::select(before, -infinity, x.hi), x.lo);
+    let side_out = R::select(steep, R::select(before, x.lo, infinity), x.hi);
+    let side_in = R::select(x.always_inside, -infinity, side_in);
+    let side_out = R::select(x.always_inside, infinity, side_out);
+
+    let in_by_side = slab_in.le(side_in);
+    let out_by_side = side_out.le(slab_out);
+    let t_in = R::select(in_by_side, side_in, slab_in);
+    let t_out = R::select(out_by_side, side_out, slab_out);
+    let crosses = (x.real | x.always_inside) & t_in.le(t_out) & (!level | level_inside);
+
+    let (side, low, high) = (R::splat(SIDE), R::splat(BOTTOM), R::splat(TOP));
+    let part_in = R::select(in_by_side, side, R::select(up, low, high));
+    let part_out = R::select(out_by_side, side, R::select(up, high, low));
+    let (mut way_in, mut way_out) = (crosses, crosses);
+    if !tube.caps {
+        way_in = way_in & in_by_side;
+        way_out = way_out & out_by_side;
+    }
+    if let Some(own) = own {
+        let own_root = R::select(x.lo.abs().lt(x.hi.abs()), x.lo, x.hi);
+        let on_side = own.on(side);
+        let on_cap = own.here & !on_side;
+        way_in = way_in & !(on_side & in_by_side & side_in.same(own_root)) & !(on_cap & own.part.same(part_in));
+        way_out = way_out & !(on_side & out_by_side & side_out.same(own_root)) & !(on_cap & own.part.same(part_out));
+    }
+    visit.crossing(t_in, part_in, way_in);
+    visit.crossing(t_out, part_out, way_out);
+}
+
+/// The point of the surface under `p`, on `part`.
+#[inline(always)]
+pub(super) fn point<R: Real>(tube: &Tube, p: [R; 3], part: R) -> Point<R> {
+    let (zero, one) = (R::zero(), R::one());
+    let on_side = part.same(R::splat(SIDE));
+    let on_bottom = part.same(R::splat(BOTTOM));
+    let slope = R::splat(tube.slope);
+
+    let rho = p[0].mul_add(p[0], p[2] * p[2]).sqrt();
+    let at_axis = rho.same(zero);
+    let away = one / R::select(at_axis, one, rho);
+    let (ex, ez) = (p[0] * away, p[2] * away);
+    let w = slope.mul_add(p[1], R::splat(tube.radius));
+    // Normal of the side: the gradient, exact everywhere but the apex, where it is taken along the axis.
+    let tilt = one / R::splat(tube.slope * tube.slope + 1.0).sqrt();
+    let side_n = [ex * tilt, -slope * tilt, ez * tilt];
+    let apex_n = [zero, one.copysign(-slope), zero];
+    let cap_n = [zero, R::select(on_bottom, -one, one), zero];
+    let cap_y = R::select(on_bottom, R::splat(tube.bottom), R::splat(tube.top));
+
+    let pick = |side: R, apex: R, cap: R| R::select(on_side, R::select(at_axis, apex, side), cap);
+    let q = [R::select(on_side, ex * w, p[0]), R::select(on_side, p[1], cap_y), R::select(on_side, ez * w, p[2])];
+    let n = [0, 1, 2].map(|i| pick(side_n[i], apex_n[i], cap_n[i]));
+    // Radius 2, of the sum's larger part; dot and root 3, quotient 1, products 2, and one to spare. A cap's height is exact.
+    let gamma = R::splat(9.0 * R::UNIT_ROUNDOFF);
+    let reach = gamma * (R::splat(tube.radius) + (slope * p[1]).abs());
+    let error = R::select(on_side, reach, zero);
+    Point { p: q, n, error: [error, zero, error] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hits(tube: &Tube, o: [f64; 3], d: [f64; 3]) -> Vec<(f64, f64)> {
+        let mut out = Vec::new();
+        let ray = LocalRay { o, o_lo: [0.0; 3], d };
+        crossings(tube, &ray, None, &mut |t, part, ok| {
+            if ok.0 && t > 0.0 {
+                out.push((t, part));
+            }
+        });
+        out
+    }
+
+    const CONE: Tube = Tube { radius: 0.0, slope: -0.5, bottom: -2.0, top: 0.0, caps: true };
+    const CAN: Tube = Tube { radius: 1.0, slope: 0.0, bottom: 0.0, top: 2.0, caps: true };
+
+    #[test]
+    fn cylinder_sides_and_caps() {
+        assert_eq!(hits(&CAN, [5.0, 1.0, 0.0], [-1.0, 0.0, 0.0]), [(4.0, SIDE), (6.0, SIDE)]);
+        assert_eq!(hits(&CAN, [0.5, 5.0, 0.0], [0.0, -1.0, 0.0]), [(3.0, TOP), (5.0, BOTTOM)]);
+        assert_eq!(hits(&CAN, [1.5, 5.0, 0.0], [0.0, -1.0, 0.0]), []);
+        assert_eq!(hits(&CAN, [5.0, 2.5, 0.0], [-1.0, 0.0, 0.0]), []);
+        let open = Tube { caps: false, ..CAN };
+        assert_eq!(hits(&open, [0.5, 5.0, 0.0], [0.0, -1.0, 0.0]), []);
+        assert_eq!(hits(&open, [0.0, 5.0, 0.0], [0.25, -1.0, 0.0]), [(4.0, SIDE)], "in through the opening");
+    }
+
+    #[test]
+    fn cone_from_all_around() {
+        assert_eq!(hits(&CONE, [5.0, -1.0, 0.0], [-1.0, 0.0, 0.0]), [(4.5, SIDE), (5.5, SIDE)]);
+        assert_eq!(hits(&CONE, [0.25, 5.0, 0.0], [0.0, -1.0, 0.0]), [(5.5, SIDE), (7.0, BOTTOM)]);
+        assert_eq!(hits(&CONE, [0.0, -5.0, 0.0], [0.0, 1.0, 0.0]), [(3.0, BOTTOM), (5.0, SIDE)], "through the apex");
+        assert_eq!(hits(&CONE, [5.0, 0.5, 0.0], [-1.0, 0.0, 0.0]), [], "the other nappe isn't ours");
+        assert_eq!(hits(&CONE, [1.5, 5.0, 0.0], [0.0, -1.0, 0.0]), []);
+    }
+
+    #[test]
+    fn own_crossing_is_taken_out() {
+        let o = [1.0, 1.0, 0.0];
+        let ray = LocalRay { o, o_lo: [0.0; 3], d: [-1.0, 0.0, 0.0] };
+        let mut left = Vec::new();
+        let own = Own { here: crate::math::real::Bool(true), part: SIDE };
+        crossings(&CAN, &ray, Some(own), &mut |t, _, ok| {
+            if ok.0 {
+                left.push(t);
+            }
+        });
+        assert_eq!(left, [2.0]);
+    }
+}

@@ -1,0 +1,132 @@
+//! Where on a surface a pattern is asked for, and how a height pattern tilts the normal.
+
+use super::material::{Slot, Surfacing, rows};
+use super::pattern::{PatternPoint, Rows, apply};
+use super::place::RESIDUE;
+use super::shape::{Kind, Primitive};
+use super::world::{MadeSpace, World};
+use crate::math::Real;
+use crate::math::real::{axpy, dot, minus, scaled, splat3};
+
+/// The maps from one primitive's frame to the spaces of its material's patterns.
+pub struct PatternFrame<'w> {
+    world: &'w World,
+    surfacing: &'w Surfacing,
+    made: Option<&'w MadeSpace>,
+}
+
+impl<'w> PatternFrame<'w> {
+    /// Composes the maps into `spaces`: once for each run of hits, none for a material without patterns.
+    pub fn new(world: &'w World, primitive: &Primitive, surfacing: &'w Surfacing, spaces: &mut Vec<Rows>) -> Self {
+        let made = match primitive.space {
+            Primitive::NO_SPACE => None,
+            space => Some(&world.spaces[space as usize]),
+        };
+        if let Some(made) = made {
+            spaces.resize(world.patterns.spaces.len(), [[0.0; 4]; 3]);
+            let by_corners = matches!(primitive.kind, Kind::Triangle(_));
+            for &k in surfacing.spaces.iter() {
+                let map = world.patterns.spaces[k as usize].compose(&made.made_from_local);
+                spaces[k as usize] = without_residue(rows(&map), by_corners);
+            }
+        }
+        PatternFrame { world, surfacing, made }
+    }
+
+    /// Whether normals are tilted by a pattern.
+    pub fn has_bump(&self) -> bool {
+        self.surfacing.bump.is_some() && self.made.is_some()
+    }
+
+    /// The point `local` of the primitive's frame, with outward normal `n` in the world.
+    #[inline(always)]
+    pub fn point<'s, R: Real>(&self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
+        let p = match spaces.first() {
+            Some(first) => apply(first, local),
+            None => local,
+        };
+        let mut at = PatternPoint { p, local, spaces, normal: n, from_centre: p, half_height: 1.0 };
+        if let Some(MadeSpace { detail: Some(detail), .. }) = self.made {
+            at.normal = turned(&detail.made_normal_from_world, n);
+            at.from_centre = minus(p, splat3(detail.centre));
+            at.half_height = detail.half_height;
+        }
+        at
+    }
+
+    /// What the material lets through at a point.
+    pub fn transmission<R: Real>(&self, world: &World, at: &PatternPoint<'_, R>) -> [R; 3] {
+        match self.surfacing.transmit {
+            Slot::Constant(c) => splat3(c),
+            Slot::Pattern(id) => world.patterns.eval(id, at),
+        }
+    }
+}
+
+/// Takes the rounding error of rotations out of a map: entries far below the largest of their row become 0. The coordinate of
+/// a flat face that lies along a cell boundary is then one number all over the face, and no speckle can arise. A
+/// triangle's frame is made of its edges, so there the largest entry of all decides.
+fn without_residue(mut rows: Rows, by_corners: bool) -> Rows {
+    let largest = |r: &[f64]| r.iter().fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
+    let of_all = rows.iter().map(|r| largest(&r[..3])).fold(0.0, |m: f64, x| if x > m { x } else { m });
+    for row in &mut rows {
+        let limit = RESIDUE * if by_corners { of_all } else { largest(&row[..3]) };
+        for x in &mut row[..3] {
+            if x.abs() <= limit {
+                *x = 0.0;
+            }
+        }
+    }
+    rows
+}
+
+/// A unit normal through the linear map for normals.
+#[inline(always)]
+fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
+    let m = map.map(|row| dot(row.map(R::splat), n));
+    scaled(R::one() / dot(m, m).sqrt(), m)
+}
+
+/// The normal `ns` tilted by the slope of the height pattern: n − ∇h along the surface, in the space in which the shape was
+/// made (Blinn, "Simulation of wrinkled surfaces", SIGGRAPH 1978). Slopes are central differences, a fraction of a feature
+/// wide.
+pub fn bumped<R: Real>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3], n: [R; 3], ns: [R; 3]) -> [R; 3] {
+    let (Some((pattern, step)), Some(made)) = (frame.surfacing.bump, frame.made) else { return ns };
+    let Some(detail) = &made.detail else { return ns };
+    let at = frame.point(spaces, local, n);
+    let height = |local: [R; 3]| {
+        let mut q = frame.point(spaces, local, n);
+        q.normal = at.normal; // pictures laid on by normal stay where they are
+        frame.world.patterns.eval(pattern, &q)[0]
+    };
+    // The slope per unit of the made space, along the local vector `v` that takes one step there.
+    let h = R::splat(step);
+    let slope = |v: [f64; 3]| {
+        let v: [R; 3] = v.map(|x| R::splat(x * step));
+        let moved = |side: R| height(axpy(side, v, local));
+        (moved(R::one()) - moved(-R::one())) / (h + h)
+    };
+    let gradient: [R; 3] = match made.made_from_local.inverse() {
+        Some(back) => {
+            let m = back.linear_f64();
+            [0, 1, 2].map(|i| slope([m[0][i], m[1][i], m[2][i]]))
+        }
+        None => {
+            // A triangle: slopes along two directions in its plane, made square by Gram and Schmidt.
+            let m = made.made_from_local.linear_f64();
+            let (e1, e2) = ([m[0][0], m[1][0], m[2][0]], [m[0][2], m[1][2], m[2][2]]);
+            let along = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let l1 = along(e1, e1).sqrt();
+            let u = e1.map(|x| x / l1);
+            let share = along(e2, u);
+            let rest: [f64; 3] = std::array::from_fn(|i| e2[i] - share * u[i]);
+            let l2 = along(rest, rest).sqrt();
+            let v = rest.map(|x| x / l2);
+            let (su, sv) = (slope([1.0 / l1, 0.0, 0.0]), slope([-share / (l1 * l2), 0.0, 1.0 / l2]));
+            axpy(sv, splat3(v), scaled(su, splat3(u)))
+        }
+    };
+    let m = turned(&detail.made_normal_from_world, ns);
+    let tilted = minus(m, axpy(-dot(m, gradient), m, gradient));
+    turned(&detail.world_normal_from_made, tilted)
+}

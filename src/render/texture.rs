@@ -1,0 +1,93 @@
+//! Pictures as the tracer reads them: bytes as in the file, brought to linear light by a table.
+
+use crate::scene::color::decode_srgb;
+use crate::scene::{Filter, Image};
+
+/// A picture, ready to be looked up. Coordinates outside 0..1 are the caller's to bring back or to wrap.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    width: usize,
+    height: usize,
+    texels: Vec<[u8; 3]>,
+    linear: Box<[f64; 256]>,
+}
+
+/// What lies beyond an edge of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// The picture again.
+    Repeat,
+    /// Its last texel.
+    Clamp,
+}
+
+impl Texture {
+    /// Takes over an image.
+    pub fn new(image: &Image) -> Texture {
+        Texture {
+            width: image.width as usize,
+            height: image.height as usize,
+            texels: image.texels.clone(),
+            linear: Box::new(std::array::from_fn(|i| decode_srgb(i as f64 / 255.0))),
+        }
+    }
+
+    /// Bytes it occupies.
+    pub fn memory_bytes(&self) -> usize {
+        self.texels.len() * 3 + size_of::<[f64; 256]>()
+    }
+
+    /// The linear colour at (u, v); (0, 0) is the lower left corner of the picture, (1, 1) the upper right.
+    pub fn at(&self, u: f64, v: f64, filter: Filter, edges: [Edge; 2]) -> [f64; 3] {
+        let (x, y) = (u * self.width as f64, (1.0 - v) * self.height as f64);
+        match filter {
+            Filter::Nearest => self.texel(x.floor(), y.floor(), edges),
+            Filter::Bilinear => {
+                let (x, y) = (x - 0.5, y - 0.5);
+                let (x0, y0) = (x.floor(), y.floor());
+                let (fx, fy) = (x - x0, y - y0);
+                let lerp = |a: [f64; 3], b: [f64; 3], t: f64| -> [f64; 3] {
+                    std::array::from_fn(|i| a[i] + t * (b[i] - a[i]))
+                };
+                let row = |y: f64| lerp(self.texel(x0, y, edges), self.texel(x0 + 1.0, y, edges), fx);
+                lerp(row(y0), row(y0 + 1.0), fy)
+            }
+        }
+    }
+
+    fn texel(&self, x: f64, y: f64, edges: [Edge; 2]) -> [f64; 3] {
+        let (i, j) = (index(x, self.width, edges[0]), index(y, self.height, edges[1]));
+        self.texels[j * self.width + i].map(|c| self.linear[c as usize])
+    }
+}
+
+/// The texel number for a whole number `x`; NaN counts as 0.
+fn index(x: f64, n: usize, edge: Edge) -> usize {
+    match edge {
+        Edge::Repeat => (x.rem_euclid(n as f64) as usize).min(n - 1),
+        Edge::Clamp => (x.clamp(0.0, (n - 1) as f64)) as usize,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_by_two() -> Texture {
+        let texels = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
+        Texture::new(&Image { path: "x.png".into(), width: 2, height: 2, texels })
+    }
+
+    #[test]
+    fn corners_edges_and_the_space_between() {
+        let t = two_by_two();
+        let clamp = [Edge::Clamp; 2];
+        assert_eq!(t.at(0.25, 0.75, Filter::Nearest, clamp), [1.0, 0.0, 0.0], "row 0 is the top");
+        assert_eq!(t.at(0.75, 0.25, Filter::Nearest, clamp), [1.0, 1.0, 1.0]);
+        assert_eq!(t.at(0.5, 0.75, Filter::Bilinear, clamp), [0.5, 0.5, 0.0]);
+        assert_eq!(t.at(0.0, 1.0, Filter::Bilinear, clamp), [1.0, 0.0, 0.0]);
+        assert_eq!(t.at(0.0, 0.75, Filter::Bilinear, [Edge::Repeat; 2]), [0.5, 0.5, 0.0]);
+        assert_eq!(t.at(-3.75, 7.75, Filter::Nearest, [Edge::Repeat; 2]), [1.0, 0.0, 0.0]);
+        assert_eq!(t.at(f64::NAN, 1e300, Filter::Nearest, clamp), [1.0, 0.0, 0.0]);
+    }
+}

@@ -1,0 +1,358 @@
+//! Traces a batch of camera rays and everything that follows from them.
+//!
+//! Rays go in batches; what a batch met is sorted by object, so that shape and material are the same for a whole run of
+//! hits. Mirrored and transmitted rays go into batches of their own, which are traced one after the other before the next
+//! batch: every pixel adds up its contributions in the order own, mirrored, transmitted, down its tree of rays, whatever
+//! batch its rays travelled in. So tiles, crops and threads can't change a bit.
+
+use super::batch::{Column, Column3, HitColumns, NONE, RayBatch, column3, load3};
+use super::bounds::Bounds;
+use super::cull::{Cone, bounds_of, margin};
+use super::options::RayCounts;
+use super::ray::Own;
+use super::shade::{Children, Hits, ShadeScratch};
+use super::shape::Visit;
+use super::world::World;
+use crate::math::{Elem, Lane, Real};
+
+/// Longest list of candidates that every ray of a batch tests in turn; beyond it each ray goes through the tree. A test costs
+/// about as much as a step through the tree, which takes two or three times the logarithm of the number of objects.
+pub const LONGEST_LIST: usize = 24;
+
+/// What a batch of rays may meet.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    /// Primitives in ascending order; for a tree, only the unbounded ones.
+    pub ids: Vec<u32>,
+    /// Whether bounded primitives are found through the tree.
+    pub tree: bool,
+}
+
+impl Candidates {
+    /// Collects what `keep` and `keep_plane` don't exclude.
+    #[inline(always)]
+    pub fn gather(
+        &mut self,
+        world: &World,
+        keep: impl FnMut(&Bounds) -> bool,
+        mut keep_plane: impl FnMut([f64; 3], f64) -> bool,
+    ) {
+        self.ids.clear();
+        self.ids.extend(world.unbounded.iter().filter(|p| keep_plane(p.n, p.offset)).map(|p| p.id));
+        let planes = self.ids.len();
+        let ids = &mut self.ids;
+        self.tree = false;
+        let tree = &mut self.tree;
+        world.bvh.gather(keep, |id| {
+            *tree = ids.len() >= planes + LONGEST_LIST;
+            if !*tree {
+                ids.push(id);
+            }
+            !*tree
+        });
+        if self.tree {
+            self.ids.truncate(planes);
+        }
+        self.ids.sort_unstable();
+    }
+
+    /// Whether nothing can be met.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty() && !self.tree
+    }
+}
+
+/// Traces batches; one for each worker thread.
+pub struct Tracer<'w, L: Lane> {
+    world: &'w World,
+    max_depth: usize,
+    levels: Vec<Level<L::Elem>>,
+    /// Light gathered by each pixel of the tile.
+    pub radiance: Column3<L::Elem>,
+    /// What camera rays may meet.
+    pub candidates: Candidates,
+    scratch: ShadeScratch<L::Elem>,
+    groups: Groups,
+    /// Rays traced so far.
+    pub counts: RayCounts,
+    capacity: usize,
+}
+
+/// The rays of one depth.
+struct Level<E> {
+    rays: RayBatch<E>,
+    hits: HitColumns<E>,
+    /// Rays and hits of one object, gathered.
+    run: RayBatch<E>,
+    run_hits: HitColumns<E>,
+    mirrored: RayBatch<E>,
+    transmitted: RayBatch<E>,
+}
+
+impl<E: Elem> Level<E> {
+    fn new(n: usize) -> Level<E> {
+        Level {
+            rays: RayBatch::new(n),
+            hits: HitColumns::new(n),
+            run: RayBatch::new(n),
+            run_hits: HitColumns::new(n),
+            mirrored: RayBatch::new(n),
+            transmitted: RayBatch::new(n),
+        }
+    }
+}
+
+impl<'w, L: Lane> Tracer<'w, L> {
+    /// A tracer for batches of up to `capacity` rays, `max_depth` reflections and transmissions deep.
+    pub fn new(world: &'w World, max_depth: u32, capacity: usize) -> Self {
+        Tracer {
+            world,
+            max_depth: max_depth as usize,
+            levels: vec![Level::new(capacity)],
+            radiance: column3(capacity),
+            candidates: Candidates::default(),
+            scratch: ShadeScratch::new(capacity),
+            groups: Groups::new(capacity),
+            counts: RayCounts::default(),
+            capacity,
+        }
+    }
+
+    /// The batch that the next [`trace`](Tracer::trace) starts with.
+    pub fn camera_rays(&mut self) -> &mut RayBatch<L::Elem> {
+        &mut self.levels[0].rays
+    }
+
+    /// Traces the camera rays, whose candidates are known, and all that follows; adds to `radiance`. `AT_EYE` says that
+    /// they all start at the origin.
+    #[inline(always)]
+    pub fn trace<const AT_EYE: bool>(&mut self) {
+        self.counts.camera += self.levels[0].rays.len as u64;
+        let mut candidates = std::mem::take(&mut self.candidates);
+        self.process::<AT_EYE>(0, &candidates);
+        let mut level = 0;
+        loop {
+            let at = &self.levels[level];
+            if at.mirrored.len > 0 {
+                self.counts.reflected += at.mirrored.len as u64;
+            } else if at.transmitted.len > 0 {
+                self.counts.transmitted += at.transmitted.len as u64;
+            } else if level > 0 {
+                level -= 1;
+                continue;
+            } else {
+                break;
+            }
+            level += 1;
+            if self.levels.len() == level {
+                self.levels.push(Level::new(self.capacity)); // once a depth, not once a ray
+            }
+            let (above, below) = self.levels.split_at_mut(level);
+            let parent = &mut above[level - 1];
+            let children = if parent.mirrored.len > 0 { &mut parent.mirrored } else { &mut parent.transmitted };
+            std::mem::swap(children, &mut below[0].rays);
+            children.len = 0;
+            narrow_to_batch::<L>(self.world, &self.levels[level].rays, &mut candidates);
+            self.process::<false>(level, &candidates);
+        }
+        self.candidates = candidates;
+    }
+
+    /// Finds what the rays of a level meet and shades it; leaves mirrored and transmitted rays in the level.
+    #[inline(always)]
+    fn process<const AT_EYE: bool>(&mut self, level: usize, candidates: &Candidates) {
+        let at = &mut self.levels[level];
+        nearest::<L, AT_EYE>(self.world, candidates, &at.rays, &mut at.hits);
+        self.groups.sort(&at.hits.id, at.rays.len);
+        for k in 0..self.groups.missed {
+            let i = self.groups.order[k] as usize;
+            let slot = at.rays.slot[i].to_f64() as usize;
+            for c in 0..3 {
+                let seen = at.rays.weight[c][i].to_f64() * self.world.background[c];
+                let sum = &mut self.radiance[c][slot];
+                *sum = L::Elem::from_f64(sum.to_f64() + seen);
+            }
+        }
+        let mut first = self.groups.missed;
+        for g in 0..self.groups.found.len() {
+            let (id, count) = self.groups.found[g];
+            let members = &self.groups.order[first..first + count as usize];
+            first += count as usize;
+            let whole = count as usize == at.rays.len;
+            if !whole {
+                gather_run(&at.rays, &at.hits, members, &mut at.run, &mut at.run_hits);
+            }
+            let (rays, hits) = if whole { (&at.rays, &at.hits) } else { (&at.run, &at.run_hits) };
+            let spawn = level < self.max_depth;
+            super::shade::shade::<L, AT_EYE>(
+                self.world,
+                Hits { id, rays, t: &hits.t, part: &hits.part },
+                &mut self.scratch,
+                &mut self.radiance,
+                Children { mirrored: &mut at.mirrored, transmitted: &mut at.transmitted, spawn },
+                &mut self.counts.shadow,
+            );
+        }
+    }
+}
+
+/// Finds the nearest crossing in front of each ray's origin.
+#[inline(always)]
+pub fn nearest<L: Lane, const AT_EYE: bool>(
+    world: &World,
+    candidates: &Candidates,
+    rays: &RayBatch<L::Elem>,
+    hits: &mut HitColumns<L::Elem>,
+) {
+    let tables = world.tables();
+    let mut g = 0;
+    while g < rays.len {
+        let d = load3::<L>(&rays.d, g);
+        let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
+        let (source, part) = (L::load(&rays.source[g..]), L::load(&rays.source_part[g..]));
+        let mut best = Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() };
+        let test = |best: &mut Nearest<L>, k: u32| {
+            best.current = L::splat(k as f64);
+            let own = if AT_EYE { None } else { Some(Own { here: source.same(best.current), part }) };
+            world.primitives[k as usize].crossings::<L, AT_EYE>(tables, o, d, own, best);
+        };
+        for &k in &candidates.ids {
+            test(&mut best, k);
+        }
+        if candidates.tree {
+            world.bvh.traverse(o, d, best.t, |k| {
+                test(&mut best, k);
+                best.t
+            });
+        }
+        best.t.store(&mut hits.t[g..]);
+        best.id.store(&mut hits.id[g..]);
+        best.part.store(&mut hits.part[g..]);
+        g += L::WIDTH;
+    }
+}
+
+/// Keeps the nearest crossing; of two at the same t, that of the primitive with the lower number.
+struct Nearest<R> {
+    t: R,
+    id: R,
+    part: R,
+    current: R,
+}
+
+impl<R: Real> Visit<R> for Nearest<R> {
+    #[inline(always)]
+    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
+        let nearer = t.lt(self.t) | (t.same(self.t) & self.current.lt(self.id));
+        let m = valid & R::zero().lt(t) & nearer;
+        self.t = R::select(m, t, self.t);
+        self.id = R::select(m, self.current, self.id);
+        self.part = R::select(m, part, self.part);
+    }
+}
+
+/// Finds what the rays of a batch may meet: the cone of their directions, from the ball around their origins.
+#[inline(always)]
+fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &mut Candidates) {
+    let margin = margin(L::UNIT_ROUNDOFF);
+    let origins = bounds_of(&rays.o, rays.len);
+    let unit = |i: usize| -> [f64; 3] {
+        let d = [0, 1, 2].map(|c| rays.d[c][i].to_f64());
+        let len = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+        d.map(|x| x / len)
+    };
+    let sum = (0..rays.len).map(unit).fold([0.0; 3], |s, d| [s[0] + d[0], s[1] + d[1], s[2] + d[2]]);
+    let len = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
+    let axis = sum.map(|x| x / len);
+    let cosine = |d: [f64; 3]| d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2];
+    let cos = (0..rays.len).map(|i| cosine(unit(i))).fold(1.0, super::bounds::smaller);
+    let cone = Cone::of_directions(origins.centre(), origins.radius(), axis, cos, margin);
+    out.gather(world, |b| cone.may_meet(b), |n, offset| cone.may_reach(&origins, n, offset));
+}
+
+/// Sorts a batch by what its rays met.
+struct Groups {
+    /// Indices of rays: first those that met nothing, then object by object in the order of `found`.
+    order: Column<u32>,
+    missed: usize,
+    /// Objects in the order of their first ray, and how many rays met them.
+    found: Vec<(u32, u32)>,
+    group_of: Vec<u32>,
+    next: Vec<u32>,
+}
+
+impl Groups {
+    fn new(n: usize) -> Groups {
+        Groups {
+            order: vec![0; n].into_boxed_slice(),
+            missed: 0,
+            found: Vec::with_capacity(n),
+            group_of: vec![0; n],
+            next: Vec::with_capacity(n),
+        }
+    }
+
+    fn sort<E: Elem>(&mut self, ids: &[E], n: usize) {
+        self.found.clear();
+        self.missed = 0;
+        let mut last = 0;
+        for (i, id) in ids[..n].iter().enumerate() {
+            let id = id.to_f64();
+            if id == NONE {
+                self.group_of[i] = u32::MAX;
+                self.order[self.missed] = i as u32;
+                self.missed += 1;
+                continue;
+            }
+            let id = id as u32;
+            // Neighbouring rays mostly meet the same object.
+            if self.found.get(last).is_none_or(|f| f.0 != id) {
+                last = self.found.iter().position(|f| f.0 == id).unwrap_or_else(|| {
+                    self.found.push((id, 0));
+                    self.found.len() - 1
+                });
+            }
+            self.found[last].1 += 1;
+            self.group_of[i] = last as u32;
+        }
+        if self.found.len() == 1 && self.missed == 0 {
+            return; // the whole batch is one run, used where it lies
+        }
+        self.next.clear();
+        let mut at = self.missed as u32;
+        for (_, count) in &self.found {
+            self.next.push(at);
+            at += count;
+        }
+        for (i, &group) in self.group_of[..n].iter().enumerate() {
+            if group != u32::MAX {
+                let at = &mut self.next[group as usize];
+                self.order[*at as usize] = i as u32;
+                *at += 1;
+            }
+        }
+    }
+}
+
+fn gather_run<E: Elem>(
+    rays: &RayBatch<E>,
+    hits: &HitColumns<E>,
+    members: &[u32],
+    run: &mut RayBatch<E>,
+    run_hits: &mut HitColumns<E>,
+) {
+    let pick = |from: &[E], to: &mut [E]| {
+        for (out, &i) in to.iter_mut().zip(members) {
+            *out = from[i as usize];
+        }
+    };
+    for c in 0..3 {
+        pick(&rays.o[c], &mut run.o[c]);
+        pick(&rays.d[c], &mut run.d[c]);
+        pick(&rays.weight[c], &mut run.weight[c]);
+    }
+    pick(&rays.slot, &mut run.slot);
+    pick(&hits.t, &mut run_hits.t);
+    pick(&hits.part, &mut run_hits.part);
+    run.len = members.len();
+}

@@ -1,0 +1,294 @@
+//! The scene as the tracer sees it from one camera: camera-relative, in tables, and only what this scene requires.
+//!
+//! Primitives and lights are numbered by their content, not by their place in the text. So the order of objects in the text
+//! never changes a pixel: where two surfaces coincide exactly, the same one is always in front.
+
+use super::bounds::Bounds;
+use super::bvh::Bvh;
+use super::camera::CameraFrame;
+use super::frame::Frame;
+use super::material::{MaterialCompiler, Slot, Surfacing};
+use super::pattern::PatternTable;
+use super::place::{Form, Placed, place, world_bounds};
+use super::shape::primitive::Tables;
+use super::shape::{Kind, Primitive, TriangleData};
+use crate::math::Affine;
+use crate::math::hash::KeyedHash;
+use crate::render::frame::LinearMap;
+use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
+use glam::DVec3;
+
+/// The scene as the tracer sees it.
+pub struct World {
+    pub(super) primitives: Vec<Primitive>,
+    /// Node and material of each primitive in the scene.
+    pub(super) origins: Vec<(NodeId, MaterialId)>,
+    pub(super) maps: Vec<LinearMap>,
+    pub(super) triangles: Vec<TriangleData>,
+    pub(super) spaces: Vec<MadeSpace>,
+    pub(super) unbounded: Vec<Unbounded>,
+    pub(super) bvh: Bvh,
+    pub(super) materials: Vec<Surfacing>,
+    pub(super) patterns: PatternTable,
+    pub(super) lights: Vec<PointLight>,
+    pub(super) camera: CameraFrame,
+    /// The camera's place in the scene.
+    pub(super) eye: [f64; 3],
+    pub(super) background: [f64; 3],
+    pub(super) ambient: [f64; 3],
+}
+
+/// The way from a primitive's frame to the space in which its shape was made.
+pub(super) struct MadeSpace {
+    pub(super) made_from_local: Affine,
+    /// Only where a picture or a bump asks.
+    pub(super) detail: Option<MadeDetail>,
+}
+
+/// What pictures and bumps need of a shape.
+pub(super) struct MadeDetail {
+    /// World normals to normals of the space in which the shape was made, but for their length.
+    pub(super) made_normal_from_world: [[f64; 3]; 3],
+    /// And back.
+    pub(super) world_normal_from_made: [[f64; 3]; 3],
+    pub(super) centre: [f64; 3],
+    pub(super) half_height: f64,
+}
+
+/// A plane n·p = offset.
+pub(super) struct Unbounded {
+    pub(super) id: u32,
+    pub(super) n: [f64; 3],
+    pub(super) offset: f64,
+}
+
+/// A light, camera-relative, its power in its colour.
+pub(super) struct PointLight {
+    pub(super) at: [f64; 3],
+    pub(super) color: [f64; 3],
+    pub(super) node: NodeId,
+}
+
+/// A primitive with what it is numbered by.
+struct Entry {
+    key: (u64, u64),
+    placed: Placed,
+    instance: Instance,
+    made: Made,
+}
+
+/// How a shape's own space lies.
+struct Made {
+    world_from_object: Affine,
+    centre: [f64; 3],
+    half_height: f64,
+}
+
+impl World {
+    /// Prepares `scene` as seen by `camera`.
+    pub fn build(scene: &Scene, camera: &Camera) -> World {
+        let to_camera = Affine::translation(-camera.from);
+        let (mut shapes, mut lights) = (Vec::new(), Vec::new());
+        scene.for_each_instance(|i| match &scene.node(i.node).kind {
+            NodeKind::Light(light) => {
+                let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
+                let color = (light.color * light.power).0;
+                if color != [0.0; 3] {
+                    lights.push(PointLight { at, color, node: i.node });
+                }
+            }
+            NodeKind::Shape(_) => shapes.push(i),
+            NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
+        });
+        lights.sort_by_key(|l| content_key(l.at.iter().chain(&l.color).map(|x| x.to_bits())));
+
+        let mut world = World {
+            primitives: Vec::new(),
+            origins: Vec::new(),
+            maps: Vec::new(),
+            triangles: Vec::new(),
+            spaces: Vec::new(),
+            unbounded: Vec::new(),
+            bvh: Bvh::default(),
+            materials: Vec::new(),
+            patterns: PatternTable::default(),
+            lights,
+            camera: CameraFrame::new(camera),
+            eye: camera.from.to_array(),
+            background: scene.background.0,
+            ambient: scene.ambient.0,
+        };
+        let numbers = world.compile_materials(scene, &shapes);
+        let digests = super::digest::material_digests(scene);
+        let mut entries = Vec::with_capacity(shapes.len());
+        for instance in shapes {
+            let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
+            let world_from_object = to_camera.compose(&instance.world_from_object);
+            for placed in place(shape, &world_from_object) {
+                let key = placed_key(&placed, digests[instance.material.0 as usize]);
+                let (centre, half_height) = middle(shape);
+                let made = Made { world_from_object, centre, half_height };
+                entries.push(Entry { key, placed, instance: instance.clone(), made });
+            }
+        }
+        entries.sort_by_key(|e| e.key);
+        let mut bounded = Vec::with_capacity(entries.len());
+        for entry in entries {
+            world.add(entry, &numbers, &mut bounded);
+        }
+        world.bvh = Bvh::build(bounded);
+        world
+    }
+
+    /// Compiles the materials that shapes wear; gives each scene material its number here.
+    fn compile_materials(&mut self, scene: &Scene, shapes: &[Instance]) -> Vec<u32> {
+        let mut numbers = vec![u32::MAX; scene.materials.len()];
+        let mut compiler = MaterialCompiler::new(scene);
+        for i in shapes {
+            let number = &mut numbers[i.material.0 as usize];
+            if *number == u32::MAX {
+                *number = self.materials.len() as u32;
+                self.materials.push(compiler.compile(scene.material(i.material), !self.lights.is_empty()));
+            }
+        }
+        self.patterns = compiler.finish();
+        numbers
+    }
+
+    fn add(&mut self, entry: Entry, numbers: &[u32], bounded: &mut Vec<(u32, Bounds)>) {
+        let Entry { placed, instance, made, .. } = entry;
+        let id = self.primitives.len() as u32;
+        let material = numbers[instance.material.0 as usize];
+        let surfacing = &self.materials[material as usize];
+        let mut space = Primitive::NO_SPACE;
+        if surfacing.patterned {
+            space = self.spaces.len() as u32;
+            let detail = (surfacing.pictured || surfacing.bump.is_some()).then(|| {
+                let back = made.world_from_object.inverse().unwrap_or(Affine::IDENTITY);
+                MadeDetail {
+                    made_normal_from_world: transposed(&made.world_from_object),
+                    world_normal_from_made: transposed(&back),
+                    centre: made.centre,
+                    half_height: made.half_height,
+                }
+            });
+            self.spaces.push(MadeSpace { made_from_local: placed.made_from_local, detail });
+        }
+        let maps = &mut self.maps;
+        let frame = Frame::new(&placed.world_from_local, |m| {
+            maps.push(m);
+            maps.len() as u32 - 1
+        });
+        let kind = match placed.form {
+            Form::Framed(kind) => kind,
+            Form::Triangle(v, n, shading) => {
+                self.triangles.push(TriangleData { v, n, shading });
+                bounded.push((id, v.into_iter().fold(Bounds::EMPTY, Bounds::with)));
+                Kind::Triangle(self.triangles.len() as u32 - 1)
+            }
+        };
+        match placed.extent {
+            Some(extent) => bounded.push((id, world_bounds(extent, &placed.world_from_local))),
+            None if matches!(kind, Kind::Plane) => {
+                let n = frame.normal_to_world(&self.maps, [0.0, 1.0, 0.0]);
+                let offset = (0..3).map(|i| n[i] * frame.centre[i]).sum();
+                self.unbounded.push(Unbounded { id, n, offset });
+            }
+            None => {}
+        }
+        self.primitives.push(Primitive { kind, frame, material, space });
+        self.origins.push((instance.node, instance.material));
+    }
+
+    /// The tables that primitives refer to.
+    #[inline(always)]
+    pub(super) fn tables(&self) -> Tables<'_> {
+        Tables { maps: &self.maps, triangles: &self.triangles }
+    }
+
+    /// The material of primitive `id`.
+    #[inline(always)]
+    pub(super) fn surfacing(&self, id: u32) -> &Surfacing {
+        &self.materials[self.primitives[id as usize].material as usize]
+    }
+
+    /// Surfaces there are.
+    pub fn primitive_count(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// Bytes held for tracing.
+    pub fn memory_bytes(&self) -> usize {
+        self.primitives.len() * (size_of::<Primitive>() + size_of::<(NodeId, MaterialId)>())
+            + self.maps.len() * size_of::<LinearMap>()
+            + self.triangles.len() * size_of::<TriangleData>()
+            + self.spaces.len() * size_of::<MadeSpace>()
+            + self.bvh.memory_bytes()
+            + self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>()
+    }
+
+    /// Whether light that meets primitive `id` goes on, dimmed by how much; `None` where a pattern decides.
+    #[inline(always)]
+    pub(super) fn constant_transmission(&self, id: u32) -> Option<[f64; 3]> {
+        match self.surfacing(id).transmit {
+            Slot::Constant(c) => Some(c),
+            Slot::Pattern(_) => None,
+        }
+    }
+}
+
+/// Centre and half height of a shape in the space in which it is made; a plane's point and ½.
+fn middle(shape: &crate::scene::Shape) -> ([f64; 3], f64) {
+    use crate::scene::Shape::*;
+    let of_points = |points: &[DVec3]| {
+        let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+        (((lo + hi) * 0.5).to_array(), 0.5 * (hi.y - lo.y))
+    };
+    let (centre, half) = match shape {
+        Sphere { at, r } => (at.to_array(), *r),
+        Plane { through, .. } => (through.to_array(), 0.5),
+        Box { from, to } => of_points(&[*from, *to]),
+        Disc { at, r, .. } => (at.to_array(), *r),
+        Cylinder { from, to, .. } | Cone { from, to, .. } => of_points(&[*from, *to]),
+        Torus { at, tube, .. } => (at.to_array(), *tube),
+        Triangle { points, .. } => of_points(points),
+        Tetrahedron { points } => of_points(points),
+    };
+    (centre, if half > 0.0 { half } else { 0.5 })
+}
+
+/// The transposed linear part: normals go by the inverse transposed.
+fn transposed(map: &Affine) -> [[f64; 3]; 3] {
+    let m = map.linear_f64();
+    std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
+}
+
+/// What a placed shape is numbered by: all of its content.
+fn placed_key(p: &Placed, material: u64) -> (u64, u64) {
+    let mut bits = vec![material];
+    let mut add = |v: &[f64]| bits.extend(v.iter().map(|x| x.to_bits()));
+    match &p.form {
+        Form::Framed(kind) => match kind {
+            Kind::Sphere(r) => add(&[1.0, *r]),
+            Kind::Plane => add(&[2.0]),
+            Kind::Disc { r, hole } => add(&[3.0, *r, *hole]),
+            Kind::Cuboid(h) => add(&[4.0, h[0], h[1], h[2]]),
+            Kind::Tube(t) => add(&[5.0, t.radius, t.slope, t.bottom, t.top, t.caps as u8 as f64]),
+            Kind::Ring(r) => add(&[6.0, r.r, r.tube, r.scale]),
+            Kind::Triangle(_) => add(&[7.0]),
+        },
+        Form::Triangle(v, n, shading) => {
+            v.iter().chain([n]).chain(shading.iter().flatten()).for_each(|x| add(x));
+        }
+    }
+    for row in p.world_from_local.linear.iter().chain([&p.world_from_local.shift]) {
+        add(&row.map(|x| x.hi));
+    }
+    let first = content_key(bits.iter().copied());
+    (first, content_key(bits.into_iter().rev()))
+}
+
+/// A number that depends on nothing but the given words.
+pub(super) fn content_key(words: impl Iterator<Item = u64>) -> u64 {
+    words.fold(KeyedHash::new(), KeyedHash::with).bits()
+}
