@@ -84,6 +84,10 @@ fn print_one(d: &Diagnostic, sources: &Sources, look: Look) -> String {
     let drawn = renderer.term_width(WIDTH).render(&[group]);
     let mut text = String::with_capacity(drawn.len() + 1);
     for line in drawn.lines() {
+        // The bar that leads from an excerpt to its notes leads nowhere without one.
+        if d.labels.is_empty() && anstream::adapter::strip_str(line).to_string().trim() == "|" {
+            continue;
+        }
         text.push_str(line.trim_end());
         text.push('\n');
     }
@@ -231,7 +235,7 @@ error: `sphere` has no property `raduis`
 ";
         assert_eq!(plain(d.clone(), &s), expected);
         assert_eq!(print(&[d.clone(), d.clone()], &s, Look::Plain), format!("{expected}\n{expected}"));
-        assert!(print(&[d.clone()], &s, Look::Colored).contains("\x1b["));
+        assert!(print(std::slice::from_ref(&d), &s, Look::Colored).contains("\x1b["));
         let mut said = d;
         said.labels[0].text = "did you mean `r`?".into();
         assert!(!plain(said, &s).contains("help"), "not said twice");
@@ -266,10 +270,7 @@ warning: `a` is there twice
     #[test]
     fn without_a_place() {
         let d = Diagnostic::error("the file `a.scene` can't be read").note("there is no such file");
-        assert_eq!(
-            plain(d, &Sources::new()),
-            "error: the file `a.scene` can't be read\n |\n = there is no such file\n"
-        );
+        assert_eq!(plain(d, &Sources::new()), "error: the file `a.scene` can't be read\n = there is no such file\n");
     }
 
     #[test]
