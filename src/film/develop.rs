@@ -1,6 +1,6 @@
 //! Linear light to the display codes of sRGB, exactly: the code is the one whose encoded value lies nearest. No formula is
 //! evaluated per pixel: the places where one code gives way to the next are computed once, from the same
-//! [`decode_srgb`](crate::scene::color::decode_srgb) that reads colours, and looked up. So the codes have the same bits
+//! [`decode_srgb`] that reads colours, and looked up. So the codes have the same bits
 //! everywhere, and writing a picture takes milliseconds.
 
 use crate::scene::color::decode_srgb;
