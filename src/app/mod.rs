@@ -1,1 +1,48 @@
-//! The commands of the program, one file each.
+//! The program: one file a command, and what several of them need. Only this floor prints, reads arguments and knows exit
+//! codes.
+
+pub mod args;
+pub mod check;
+pub mod completions;
+pub mod explain;
+pub mod help;
+pub mod load;
+pub mod params;
+pub mod progress;
+pub mod render;
+pub mod stats;
+pub mod stop;
+pub mod view;
+
+pub use stop::{Exit, Stop};
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Does what the arguments ask for, the program's name first among them; prints results to standard output, messages to
+/// standard error.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(args::with_stats_value(arguments)) {
+        Ok(cli) => cli,
+        Err(e) => {
+            // Also how `--help` and `--version` arrive. If even the message can't be printed, the code is all there is.
+            let _ = e.print();
+            return ExitCode::from(e.exit_code() as u8);
+        }
+    };
+    let result = match &cli.command {
+        Command::Render(a) => render::run(a),
+        Command::Check(a) => check::run(a),
+        Command::Explain(a) => explain::run(a),
+        Command::Params(a) => params::run(a),
+        Command::Help(a) => help::run(a),
+        Command::Completions(a) => completions::run(a),
+    };
+    let exit = result.unwrap_or_else(|stop| {
+        stop.print();
+        stop.exit
+    });
+    ExitCode::from(exit as u8)
+}

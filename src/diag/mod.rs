@@ -3,8 +3,12 @@
 
 pub mod diagnostic;
 pub mod place;
+pub mod report;
+pub mod snippet;
 pub mod source;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
 pub use place::{CallFrame, Place};
+pub use report::Report;
+pub use snippet::{Look, print, summary};
 pub use source::{FileId, Source, Sources, Span};

@@ -29,17 +29,27 @@ impl Place {
         Place { span, trace: None }
     }
 
-    /// The calls, innermost first, as `called from …` lines.
+    /// The calls, innermost first, as `called from …` lines. The middle of a long chain is left out: a runaway recursion
+    /// is plain from its ends.
     pub fn call_chain(&self, sources: &Sources) -> Vec<String> {
-        let mut lines = Vec::new();
-        let mut frame = self.trace.as_deref();
-        while let Some(f) = frame {
-            lines.push(format!("called from {} at {}", f.call, sources.location(f.span)));
-            frame = f.parent.as_deref();
+        let frames: Vec<&CallFrame> =
+            std::iter::successors(self.trace.as_deref(), |frame| frame.parent.as_deref()).collect();
+        let line = |frame: &&CallFrame| format!("called from {} at {}", frame.call, sources.location(frame.span));
+        let left_out = frames.len().saturating_sub(INNERMOST_SHOWN + OUTERMOST_SHOWN);
+        if left_out <= 1 {
+            return frames.iter().map(line).collect();
         }
+        let mut lines: Vec<String> = frames[..INNERMOST_SHOWN].iter().map(line).collect();
+        lines.push(format!("… {left_out} more …"));
+        lines.extend(frames[frames.len() - OUTERMOST_SHOWN..].iter().map(line));
         lines
     }
 }
+
+/// Calls shown next to the mistake: enough to see the pattern of a recursion.
+const INNERMOST_SHOWN: usize = 5;
+/// Calls shown at the other end: where it all began.
+const OUTERMOST_SHOWN: usize = 2;
 
 // A chain can be as long as the recursion limit allows; dropping it must not recurse.
 impl Drop for CallFrame {
@@ -48,5 +58,32 @@ impl Drop for CallFrame {
         while let Some(frame) = next {
             next = Arc::into_inner(frame).and_then(|mut f| f.parent.take());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::Source;
+
+    #[test]
+    fn long_chains_show_their_ends() {
+        let mut sources = Sources::new();
+        let file = sources.add(Source { name: "a.scene".into(), path: None, text: "f(0)".into() });
+        let span = Span::new(file, 0..4);
+        let mut trace = None;
+        for i in 0..100_000 {
+            trace = Some(Arc::new(CallFrame { call: format!("f({i})").into(), span, parent: trace }));
+        }
+        let lines = Place { span, trace: trace.clone() }.call_chain(&sources);
+        assert_eq!(lines.len(), 8);
+        assert_eq!(lines[0], "called from f(99999) at a.scene:1:1");
+        assert_eq!(lines[5], "… 99993 more …");
+        assert_eq!(lines[7], "called from f(0) at a.scene:1:1");
+        let mut short = trace;
+        for _ in 0..100_000 - 8 {
+            short = short.and_then(|f| f.parent.clone());
+        }
+        assert_eq!(Place { span, trace: short }.call_chain(&sources).len(), 8, "one line isn't replaced by one line");
     }
 }

@@ -1,5 +1,14 @@
-//! From linear colours to picture files.
+//! From linear colours to picture files: the picture in linear light, its display codes, the formats, and writing whole
+//! files or none.
 
 pub mod buffer;
+pub mod develop;
+pub mod format;
+pub mod recipe;
+pub mod write;
 
 pub use buffer::Film;
+pub use develop::{Depth, Developer};
+pub use format::{Format, encode};
+pub use recipe::Recipe;
+pub use write::OutputFile;

@@ -1,0 +1,30 @@
+//! A progress bar on a terminal, and nothing anywhere else.
+
+use crate::render::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// The bar; gone when dropped.
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar for `pixels` pixels on standard error, if it is a terminal; none when `quiet`.
+    pub fn new(pixels: u64, quiet: bool) -> Bar {
+        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(pixels), target);
+        // The plain bar serves if the template weren't understood.
+        let style = ProgressStyle::with_template("{bar:40.cyan} {percent:>3} %  {elapsed} passed, {eta} left");
+        Bar(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
+    }
+}
+
+impl Progress for Bar {
+    fn advance(&self, pixels: u64) {
+        self.0.inc(pixels);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,164 @@
+//! `rtdsl render`: from the text to the picture file.
+
+use super::args::RenderArgs;
+use super::load::{load, request, shown_name};
+use super::progress::Bar;
+use super::stats::{self, Seconds, Stats};
+use super::view::{checked_crop, precision_word, settings_line};
+use super::{Exit, Stop};
+use crate::diag::Diagnostic;
+use crate::film::{self, Depth, Film, Format, OutputFile, Recipe, recipe};
+use crate::lang::Evaluated;
+use crate::render::{self, Rendered, World};
+use std::io::{self, Cursor, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Where the picture goes.
+enum Output {
+    Stdout,
+    File(PathBuf),
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// The arguments don't fit the scene, the scene is wrong, or a file can't be read or written.
+pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
+    let start = Instant::now();
+    let (output, format) = output(args)?;
+    let evaluated = load(&request(&args.scene.file, &args.scene.set, &args.scene.allow_read)?, args.quiet)?;
+    let camera = args.view.camera(&evaluated.scene)?;
+    let mut options = args.view.options(&evaluated.scene);
+    options.crop = checked_crop(args.crop, &options)?;
+    options.threads = args.threads.map(|n| n as usize);
+    let target = match &output {
+        Output::Stdout => None,
+        Output::File(path) => Some(target(path, &evaluated)?),
+    };
+
+    let world_start = Instant::now();
+    let world = World::build(&evaluated.scene, camera, &options);
+    let world_seconds = world_start.elapsed().as_secs_f64();
+
+    let render_start = Instant::now();
+    let part = options.crop_or_all();
+    let bar = Bar::new(part.width as u64 * part.height as u64, args.quiet);
+    let rendered = render::render(&world, &options, &bar, &AtomicBool::new(false));
+    drop(bar);
+    let Some(Rendered { film, rays, threads }) = rendered else {
+        return Err(Stop::system("the picture wasn't finished", io::ErrorKind::Interrupted.into()));
+    };
+    let render_seconds = render_start.elapsed().as_secs_f64();
+
+    let encode_start = Instant::now();
+    let recipe = Recipe::new()
+        .with("rtdsl:scene", recipe::scene_digest(&evaluated.sources))
+        .with("rtdsl:settings", settings_line(&options, camera))
+        .with("rtdsl:parameters", parameters_line(&evaluated));
+    match (&output, &target) {
+        (Output::File(path), Some(target)) => target
+            .write(|out| film::encode(&film, format, &recipe, out))
+            .map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))?,
+        _ => write_stdout(&film, format, &recipe)?,
+    }
+    let encode_seconds = encode_start.elapsed().as_secs_f64();
+
+    if let Some(form) = args.stats {
+        let stats = Stats {
+            size: [film.width, film.height],
+            threads,
+            precision: precision_word(options.precision),
+            samples_per_pixel: options.aa.side() * options.aa.side(),
+            rays: rays.into(),
+            seconds: Seconds {
+                parse: evaluated.parse_seconds,
+                evaluate: evaluated.evaluate_seconds,
+                world: world_seconds,
+                render: render_seconds,
+                encode: encode_seconds,
+                total: start.elapsed().as_secs_f64(),
+            },
+            peak_memory_bytes: stats::peak_memory_bytes(),
+            features: world.features().into_iter().filter(|f| f.in_use).map(|f| f.name).collect(),
+            image_hash: film.hash(),
+        };
+        let text = stats.print(form);
+        // Standard output is the picture's where it goes there.
+        match output {
+            Output::Stdout => io::stderr().write_all(text.as_bytes())?,
+            Output::File(_) => io::stdout().write_all(text.as_bytes())?,
+        }
+    }
+    if let Output::File(path) = &output
+        && !args.quiet
+        && io::stderr().is_terminal()
+    {
+        let seconds = start.elapsed().as_secs_f64();
+        let _ = writeln!(io::stderr(), "{}  {}x{}  {seconds:.2} s", path.display(), film.width, film.height);
+    }
+    Ok(Exit::Done)
+}
+
+/// Where the picture goes and in what form.
+fn output(args: &RenderArgs) -> Result<(Output, Format), Stop> {
+    let png = Format::Png(args.bits);
+    let from_stdin = args.scene.file == Path::new("-");
+    match &args.out {
+        Some(path) if path == Path::new("-") => Ok((Output::Stdout, png)),
+        Some(path) => match Format::from_path(path, args.bits) {
+            Some(format) => {
+                if args.bits == Depth::Sixteen && format != png {
+                    let d = Diagnostic::error("`--bits` is for `.png` files");
+                    return Err(Stop::usage(d.note("`.exr` and `.hdr` hold linear light in a form of their own")));
+                }
+                Ok((Output::File(path.clone()), format))
+            }
+            None => {
+                let d = Diagnostic::error(format!("what kind of picture shall `{}` be?", path.display()));
+                Err(Stop::usage(d.note("its name must end in `.png`, `.exr` or `.hdr`")))
+            }
+        },
+        None if from_stdin && io::stdout().is_terminal() => {
+            let d = Diagnostic::error("a picture of standard input needs a place to go");
+            Err(Stop::usage(d.note("write `-o NAME.png`, or send standard output to a file or another program")))
+        }
+        None if from_stdin => Ok((Output::Stdout, png)),
+        None => {
+            let Some(stem) = args.scene.file.file_stem() else {
+                let d = Diagnostic::error(format!("`{}` names no file", shown_name(&args.scene.file)));
+                return Err(Stop::usage(d));
+            };
+            let mut name = stem.to_os_string();
+            name.push(".png");
+            Ok((Output::File(name.into()), png))
+        }
+    }
+}
+
+/// The file to write, found to be writable before the work begins, and none of those that the scene reads.
+fn target(path: &Path, evaluated: &Evaluated) -> Result<OutputFile, Stop> {
+    if let Ok(same) = path.canonicalize()
+        && evaluated.files.iter().any(|f| f.canonicalize().is_ok_and(|f| f == same))
+    {
+        let d = Diagnostic::error(format!("the picture would overwrite `{}`, which the scene reads", path.display()));
+        return Err(Stop::usage(d.note("give it another name with `-o`")));
+    }
+    OutputFile::new(path).map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))
+}
+
+fn write_stdout(film: &Film, format: Format, recipe: &Recipe) -> Result<(), Stop> {
+    let mut memory = Cursor::new(Vec::new());
+    film::encode(film, format, recipe, &mut memory)?;
+    let mut out = io::stdout().lock();
+    out.write_all(memory.get_ref())?;
+    out.flush()?;
+    Ok(())
+}
+
+/// Every parameter's value, as `--set` takes it.
+fn parameters_line(evaluated: &Evaluated) -> String {
+    let values: Vec<String> = evaluated.params.iter().map(|p| format!("{}={}", p.name, p.value)).collect();
+    values.join("; ")
+}

@@ -1,0 +1,148 @@
+//! What a picture took: `--stats`.
+
+use super::args::StatsForm;
+use crate::render::RayCounts;
+use serde::Serialize;
+
+/// The measurements of one run; field names are those of the JSON form.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stats {
+    /// Width and height of the picture that was made, in pixels.
+    pub size: [u32; 2],
+    /// Threads that traced.
+    pub threads: usize,
+    /// `"f64"` or `"f32"`.
+    pub precision: &'static str,
+    /// Camera rays a pixel.
+    pub samples_per_pixel: u32,
+    /// Rays traced.
+    pub rays: Rays,
+    /// Wall-clock seconds.
+    pub seconds: Seconds,
+    /// Most memory that the process ever held, in bytes; `None` where the system doesn't tell.
+    pub peak_memory_bytes: Option<u64>,
+    /// Abilities of the renderer that the scene required.
+    pub features: Vec<&'static str>,
+    /// [`Film::hash`](crate::film::Film::hash): the same for the same picture everywhere.
+    pub image_hash: String,
+}
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Rays {
+    /// From the camera.
+    pub camera: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// Mirrored.
+    pub reflected: u64,
+    /// Gone through a surface.
+    pub transmitted: u64,
+    /// All of them.
+    pub total: u64,
+}
+
+/// Seconds by phase.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Seconds {
+    /// Text to syntax.
+    pub parse: f64,
+    /// Syntax to scene, images included.
+    pub evaluate: f64,
+    /// Scene to world.
+    pub world: f64,
+    /// World to film.
+    pub render: f64,
+    /// Film to file.
+    pub encode: f64,
+    /// From the start of the command to its end.
+    pub total: f64,
+}
+
+impl From<RayCounts> for Rays {
+    fn from(r: RayCounts) -> Rays {
+        let total = r.camera + r.shadow + r.reflected + r.transmitted;
+        Rays { camera: r.camera, shadow: r.shadow, reflected: r.reflected, transmitted: r.transmitted, total }
+    }
+}
+
+impl Stats {
+    /// The report, ending in a newline.
+    pub fn print(&self, form: StatsForm) -> String {
+        match form {
+            // Numbers, texts and lists always have a JSON form.
+            StatsForm::Json => serde_json::to_string(self).unwrap_or_default() + "\n",
+            StatsForm::Text => self.text(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let [w, h] = self.size;
+        let (r, s) = (&self.rays, &self.seconds);
+        let lines = [
+            ("size", format!("{w}x{h}")),
+            ("threads", self.threads.to_string()),
+            ("precision", self.precision.to_string()),
+            ("samples per pixel", self.samples_per_pixel.to_string()),
+            (
+                "rays",
+                format!(
+                    "{}: {} camera, {} shadow, {} reflected, {} transmitted",
+                    r.total, r.camera, r.shadow, r.reflected, r.transmitted
+                ),
+            ),
+            (
+                "seconds",
+                format!(
+                    "{:.4}: {:.4} parse, {:.4} evaluate, {:.4} world, {:.4} render, {:.4} encode",
+                    s.total, s.parse, s.evaluate, s.world, s.render, s.encode
+                ),
+            ),
+            ("peak memory", self.peak_memory_bytes.map_or("unknown".into(), |b| format!("{:.1} MB", b as f64 / 1e6))),
+            ("features", if self.features.is_empty() { "none".into() } else { self.features.join(", ") }),
+            ("image hash", self.image_hash.clone()),
+        ];
+        lines.map(|(name, value)| format!("{name:<18} {value}\n")).concat()
+    }
+}
+
+/// The kernel's high-water mark of this process; `None` where there is no `/proc`.
+pub fn peak_memory_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_forms_tell_everything() {
+        let stats = Stats {
+            size: [4, 3],
+            threads: 2,
+            precision: "f64",
+            samples_per_pixel: 4,
+            rays: RayCounts { camera: 48, shadow: 10, reflected: 2, transmitted: 1 }.into(),
+            seconds: Seconds { total: 0.5, ..Seconds::default() },
+            peak_memory_bytes: None,
+            features: vec!["shadows", "reflection"],
+            image_hash: "abc".into(),
+        };
+        let json: serde_json::Value = serde_json::from_str(&stats.print(StatsForm::Json)).unwrap();
+        assert_eq!(json["size"], serde_json::json!([4, 3]));
+        assert_eq!(json["rays"]["total"], 61);
+        assert_eq!(json["peak_memory_bytes"], serde_json::Value::Null);
+        let text = stats.print(StatsForm::Text);
+        assert!(text.starts_with("size               4x3\nthreads            2\n"), "{text}");
+        assert!(text.contains("features           shadows, reflection\n"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn memory_is_known_on_linux() {
+        assert!(peak_memory_bytes().unwrap() > 1 << 20, "at least the program itself");
+    }
+}

@@ -1,0 +1,220 @@
+//! The floors of the house, checked: who may import whom, a heading in every file, no file too long to read.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Folders of `src` from the ground up. A file imports from lower floors; `lang` and `render` share one and never meet.
+const FLOORS: [(&str, u32); 7] =
+    [("math", 0), ("diag", 0), ("scene", 1), ("film", 1), ("lang", 2), ("render", 2), ("app", 3)];
+
+/// Folders of one floor that may be used all the same: pictures are developed with the scene's colour formulas.
+const SAME_FLOOR: [(&str, &str); 1] = [("film", "scene")];
+
+/// A file longer than this holds more than one idea.
+const MOST_LINES: usize = 400;
+
+fn floor(folder: &str) -> Option<u32> {
+    FLOORS.iter().find(|(name, _)| *name == folder).map(|(_, floor)| *floor)
+}
+
+fn allowed(from: &str, to: &str) -> bool {
+    match (floor(from), floor(to)) {
+        _ if from == to || SAME_FLOOR.contains(&(from, to)) => true,
+        (Some(a), Some(b)) => b < a,
+        _ => false,
+    }
+}
+
+/// `text` with comments and the contents of string and character literals blanked out; line ends stay.
+fn code_of(text: &str) -> String {
+    let chars: Vec<char> = text.chars().collect();
+    let at = |i: usize| chars.get(i).copied().unwrap_or('\0');
+    let mut out = String::with_capacity(text.len());
+    let mut i = 0;
+    while i < chars.len() {
+        let end = match at(i) {
+            '/' if at(i + 1) == '/' => (i..chars.len()).find(|&k| at(k) == '\n').unwrap_or(chars.len()),
+            '/' if at(i + 1) == '*' => end_of_block_comment(&chars, i),
+            '"' => end_of_string(&chars, i),
+            'r' if raw_hashes(&chars, i).is_some() => end_of_raw_string(&chars, i),
+            '\'' if at(i + 1) == '\\' => (i + 3..chars.len()).find(|&k| at(k) == '\'').map_or(chars.len(), |k| k + 1),
+            '\'' if at(i + 2) == '\'' => i + 3,
+            c => {
+                out.push(c);
+                i += 1;
+                continue;
+            }
+        };
+        let end = end.min(chars.len());
+        out.extend(chars[i..end].iter().map(|&c| if c == '\n' { '\n' } else { ' ' }));
+        i = end;
+    }
+    out
+}
+
+fn end_of_block_comment(chars: &[char], start: usize) -> usize {
+    let (mut depth, mut i) = (0, start);
+    while i + 1 < chars.len() {
+        match (chars[i], chars[i + 1]) {
+            ('/', '*') => (depth, i) = (depth + 1, i + 2),
+            ('*', '/') => (depth, i) = (depth - 1, i + 2),
+            _ => i += 1,
+        }
+        if depth == 0 {
+            return i;
+        }
+    }
+    chars.len()
+}
+
+fn end_of_string(chars: &[char], start: usize) -> usize {
+    let mut i = start + 1;
+    while i < chars.len() && chars[i] != '"' {
+        i += if chars[i] == '\\' { 2 } else { 1 };
+    }
+    i + 1
+}
+
+/// How many `#` the raw string has that starts at `i`; `None` if none starts there.
+fn raw_hashes(chars: &[char], i: usize) -> Option<usize> {
+    let in_a_word = i > 0 && (chars[i - 1] == '_' || chars[i - 1].is_alphanumeric() && chars[i - 1] != 'b');
+    let hashes = chars[i + 1..].iter().take_while(|&&c| c == '#').count();
+    (!in_a_word && chars.get(i + 1 + hashes) == Some(&'"')).then_some(hashes)
+}
+
+fn end_of_raw_string(chars: &[char], start: usize) -> usize {
+    let hashes = raw_hashes(chars, start).unwrap_or(0);
+    let close: Vec<char> = std::iter::once('"').chain(std::iter::repeat_n('#', hashes)).collect();
+    let from = start + 2 + hashes;
+    (from..chars.len()).find(|&k| chars[k..].starts_with(&close)).map_or(chars.len(), |k| k + close.len())
+}
+
+/// The folders that a file names, each with its line: by `crate::…`, and by `super::…` that reaches the crate's root.
+/// `path` is relative to `src`, with `/`.
+fn folders_used(path: &str, text: &str) -> Vec<(usize, String)> {
+    let code = code_of(text);
+    // As many `super` lead from the file to the root, and one more from a module inside it (tests).
+    let depth = path.trim_end_matches(".rs").trim_end_matches("/mod").split('/').count();
+    let mut used = Vec::new();
+    for start in ["crate::", "super::"] {
+        for (i, _) in code.match_indices(start) {
+            // Not within a longer name, and a chain of `super` only from its beginning.
+            if code[..i].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':') {
+                continue;
+            }
+            let mut tree = &code[i + start.len()..];
+            let mut ups = 1;
+            while let Some(rest) = tree.strip_prefix("super::") {
+                (tree, ups) = (rest, ups + 1);
+            }
+            if start == "crate::" || ups == depth || ups == depth + 1 {
+                let line = code[..i].matches('\n').count() + 1;
+                used.extend(first_names(tree).into_iter().map(|name| (line, name)));
+            }
+        }
+    }
+    used.retain(|(_, name)| floor(name).is_some());
+    used
+}
+
+/// The first names of a use tree: `a::b` gives a; `{a::b, c}` gives a and c.
+fn first_names(tree: &str) -> Vec<String> {
+    let word = |s: &str| s.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let Some(list) = tree.strip_prefix('{') else {
+        return vec![word(tree)];
+    };
+    let mut names = vec![word(list)];
+    let mut depth = 0;
+    for (i, c) in list.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => names.push(word(&list[i + 1..])),
+            _ => {}
+        }
+    }
+    names
+}
+
+/// What is wrong with one file; empty if nothing is.
+fn faults(path: &str, text: &str) -> Vec<String> {
+    let mut faults = Vec::new();
+    if !text.starts_with("//!") {
+        faults.push(format!("{path}: doesn't open with `//!`: what it is and why"));
+    }
+    let lines = text.lines().count();
+    if lines > MOST_LINES {
+        faults.push(format!("{path}: {lines} lines; split it by idea"));
+    }
+    let Some((folder, _)) = path.split_once('/') else {
+        return faults; // lib.rs and main.rs stand above all floors
+    };
+    if floor(folder).is_none() {
+        faults.push(format!("{path}: the folder `{folder}` has no floor"));
+    }
+    for (line, to) in folders_used(path, text) {
+        if !allowed(folder, &to) {
+            faults.push(format!("{path}:{line}: `{folder}` must not know `{to}`"));
+        }
+    }
+    faults
+}
+
+fn rust_files(folder: &Path, into: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            rust_files(&path, into);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            into.push(path);
+        }
+    }
+}
+
+#[test]
+fn the_house_stands() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    rust_files(&src, &mut files);
+    assert!(files.len() > 20, "the sources were found");
+    let mut all = Vec::new();
+    for file in &files {
+        let name = file.strip_prefix(&src).unwrap().to_str().unwrap().replace('\\', "/");
+        all.extend(faults(&name, &fs::read_to_string(file).unwrap()));
+    }
+    assert!(all.is_empty(), "\n{}", all.join("\n"));
+}
+
+#[test]
+fn violations_are_found() {
+    let found = |path: &str, code: &str| faults(path, &format!("//! Heading.\n{code}\n"));
+    for (path, code) in [
+        ("lang/a.rs", "use crate::render::World;"),
+        ("render/shape/a.rs", "use crate::{math::Affine, lang};"),
+        ("math/a.rs", "use crate::scene::Color;"),
+        ("math/a.rs", "use crate::diag::Span;"),
+        ("scene/a.rs", "fn f() -> crate::film::Film {}"),
+        ("film/a.rs", "use super::super::render;"),
+        ("film/mod.rs", "use super::lang::evaluate;"),
+        ("film/a.rs", "mod tests { use super::super::super::app; }"),
+        ("render/a.rs", "use crate::{math::{Affine, Real}, app::run};"),
+        ("cellar/a.rs", ""),
+        ("lang/a.rs", "/* \" */ use crate::render;"),
+        ("lang/a.rs", "let c = '\"'; use crate::render;"),
+        ("math/a.rs", &"\n".repeat(MOST_LINES)),
+    ] {
+        assert_eq!(found(path, code).len(), 1, "{path}: {code}");
+    }
+    assert_eq!(faults("math/a.rs", "use std::fmt;\n").len(), 1, "no heading");
+    for (path, code) in [
+        ("film/a.rs", "use crate::scene::color::decode_srgb;"),
+        ("app/a.rs", "use crate::{lang, render::World};"),
+        ("lang/a/b.rs", "use super::super::value::Value; use super::lang; use crate::lang::parse;"),
+        ("lang/a.rs", "// crate::render\n/* crate::render /* nested */ crate::app */ let s = \"crate::render\";"),
+        ("lang/a.rs", "let s = r#\"\" crate::render::World\"#; let c = ['\"', '\\'', '/']; let x: &'static str;"),
+        ("main.rs", "use crate::app;"),
+    ] {
+        assert_eq!(found(path, code), Vec::<String>::new(), "{path}: {code}");
+    }
+}
