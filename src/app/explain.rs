@@ -27,11 +27,11 @@ pub fn run(args: &ExplainArgs) -> Result<Exit, Stop> {
         let (right, bottom) = (options.width - 1, options.height - 1);
         return Err(Stop::usage(d.note(format!("its columns are 0 to {right}, its rows 0 to {bottom}"))));
     }
-    let world = World::build(&evaluated.scene, camera, &options);
+    let world = World::build(&evaluated.scene, camera);
     let text = match args.pixel {
         None => {
             let head = heading(&shown_name(&args.scene.file), camera, &options);
-            head + &features(&world.features(), world.memory_bytes(), &evaluated.sources)
+            head + &features(&world.features(&evaluated.scene), world.memory_bytes(), &evaluated.sources)
         }
         Some((x, y)) => match render::probe(&world, &options, x, y) {
             None => format!("pixel {x},{y} sees the background\n"),

@@ -39,7 +39,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     };
 
     let world_start = Instant::now();
-    let world = World::build(&evaluated.scene, camera, &options);
+    let world = World::build(&evaluated.scene, camera);
     let world_seconds = world_start.elapsed().as_secs_f64();
 
     let render_start = Instant::now();
@@ -81,7 +81,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
                 total: start.elapsed().as_secs_f64(),
             },
             peak_memory_bytes: stats::peak_memory_bytes(),
-            features: world.features().into_iter().filter(|f| f.in_use).map(|f| f.name).collect(),
+            features: world.features(&evaluated.scene).into_iter().filter(|f| f.in_use).map(|f| f.name).collect(),
             image_hash: film.hash(),
         };
         let text = stats.print(form);

@@ -71,6 +71,8 @@ pub struct Tracer<'w, L: Lane> {
     pub radiance: Column3<L::Elem>,
     /// What camera rays may meet.
     pub candidates: Candidates,
+    /// What the batch at hand may meet.
+    narrowed: Candidates,
     scratch: ShadeScratch<L::Elem>,
     groups: Groups,
     /// Rays traced so far.
@@ -111,6 +113,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
             levels: vec![Level::new(capacity)],
             radiance: column3(capacity),
             candidates: Candidates::default(),
+            narrowed: Candidates::default(),
             scratch: ShadeScratch::new(capacity),
             groups: Groups::new(capacity),
             counts: RayCounts::default(),
@@ -128,7 +131,8 @@ impl<'w, L: Lane> Tracer<'w, L> {
     #[inline(always)]
     pub fn trace<const AT_EYE: bool>(&mut self) {
         self.counts.camera += self.levels[0].rays.len as u64;
-        let mut candidates = std::mem::take(&mut self.candidates);
+        let candidates = std::mem::take(&mut self.candidates);
+        let mut narrowed = std::mem::take(&mut self.narrowed);
         self.process::<AT_EYE>(0, &candidates);
         let mut level = 0;
         loop {
@@ -152,10 +156,10 @@ impl<'w, L: Lane> Tracer<'w, L> {
             let children = if parent.mirrored.len > 0 { &mut parent.mirrored } else { &mut parent.transmitted };
             std::mem::swap(children, &mut below[0].rays);
             children.len = 0;
-            narrow_to_batch::<L>(self.world, &self.levels[level].rays, &mut candidates);
-            self.process::<false>(level, &candidates);
+            narrow_to_batch::<L>(self.world, &self.levels[level].rays, &mut narrowed);
+            self.process::<false>(level, &narrowed);
         }
-        self.candidates = candidates;
+        (self.candidates, self.narrowed) = (candidates, narrowed);
     }
 
     /// Finds what the rays of a level meet and shades it; leaves mirrored and transmitted rays in the level.

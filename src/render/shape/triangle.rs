@@ -54,7 +54,10 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let positive = zero.lt(e[0]) | zero.lt(e[1]) | zero.lt(e[2]);
     let det = e[0] + e[1] + e[2];
     let hit = !(negative & positive) & !det.same(zero);
-    let t = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2] * c[2])) * sz / det;
+    // Weights before the sum: products of an edge's determinant with a length would leave the range that squares allow.
+    let inverse = R::one() / det;
+    let w = e.map(|x| x * inverse);
+    let t = w[0].mul_add(a[2], w[1].mul_add(b[2], w[2] * c[2])) * sz;
     Edges { e, det, t, hit }
 }
 
