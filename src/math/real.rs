@@ -271,6 +271,19 @@ pub const fn gamma(n: f64, unit_roundoff: f64) -> f64 {
     n * unit_roundoff / (1.0 - n * unit_roundoff)
 }
 
+/// The three values of `f`. In place of an array's `map`, so that it is surely inlined: kernels are compiled for more
+/// instructions than the standard library, whose functions would call the slow forms.
+#[inline(always)]
+pub fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
+}
+
+/// `f` of each of three values; see [`three`].
+#[inline(always)]
+pub fn each3<T: Copy, U>(v: [T; 3], f: impl Fn(T) -> U) -> [U; 3] {
+    [f(v[0]), f(v[1]), f(v[2])]
+}
+
 /// Dot product of 3-vectors; fused, in a fixed order.
 #[inline(always)]
 pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
@@ -298,7 +311,7 @@ pub fn minus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 /// A constant 3-vector in every lane.
 #[inline(always)]
 pub fn splat3<R: Real>(v: [f64; 3]) -> [R; 3] {
-    v.map(R::splat)
+    each3(v, R::splat)
 }
 
 /// `a` where `m`, else `b`, for 3-vectors.

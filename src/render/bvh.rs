@@ -4,6 +4,7 @@
 //! bounding volume hierarchies", 2007). The same primitives give the same tree.
 
 use super::bounds::Bounds;
+use crate::math::real::{each3, three};
 use crate::math::{Mask, Real};
 
 /// The tree.
@@ -92,8 +93,8 @@ impl Bvh {
         if self.nodes.is_empty() {
             return;
         }
-        let inverse = d.map(|x| R::one() / x);
-        let first_sign = [0, 1, 2].map(|i| !d[i].lt(R::zero()).any());
+        let inverse = each3(d, |x| R::one() / x);
+        let first_sign = three(|i| !d[i].lt(R::zero()).any());
         let (mut stack, mut depth) = ([0u32; STACK], 1);
         while depth > 0 {
             depth -= 1;

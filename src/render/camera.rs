@@ -6,6 +6,7 @@ use super::options::Options;
 use super::place::unit;
 use crate::math::Real;
 use crate::math::fun::tan_deg;
+use crate::math::real::{each3, three};
 use crate::scene::{Camera, Projection};
 use glam::DVec3;
 
@@ -72,10 +73,10 @@ impl PixelGrid<'_> {
         let (sx, sy) = ((x - R::splat(self.half_width)) * step, (R::splat(self.half_height) - y) * step);
         let c = self.camera;
         let across = |base: fn(&CameraFrame, usize) -> f64| {
-            [0, 1, 2].map(|i| R::splat(c.right[i]).mul_add(sx, R::splat(c.up[i]).mul_add(sy, R::splat(base(c, i)))))
+            three(|i| R::splat(c.right[i]).mul_add(sx, R::splat(c.up[i]).mul_add(sy, R::splat(base(c, i)))))
         };
         if c.parallel {
-            (across(|_, _| 0.0), c.forward.map(R::splat))
+            (across(|_, _| 0.0), each3(c.forward, R::splat))
         } else {
             ([R::zero(); 3], across(|c, i| c.forward[i]))
         }

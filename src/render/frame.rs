@@ -5,7 +5,7 @@
 //! shape are then as good as those of a near one.
 
 use super::ray::LocalRay;
-use crate::math::real::{dot, two_prod, two_sum};
+use crate::math::real::{dot, each3, splat3, three, two_prod, two_sum};
 use crate::math::{Affine, Real};
 
 /// Placement of a shape.
@@ -55,7 +55,7 @@ impl Frame {
     /// The ray in this frame. `AT_EYE` says that every origin is exactly 0, which spares the subtraction.
     #[inline(always)]
     pub fn localize<R: Real, const AT_EYE: bool>(&self, maps: &[LinearMap], o: [R; 3], d: [R; 3]) -> LocalRay<R> {
-        let f: [(R, R); 3] = [0, 1, 2].map(|i| {
+        let f: [(R, R); 3] = three(|i| {
             let (c, c_lo) = (R::splat(-self.centre[i]), R::splat(-self.centre_lo[i]));
             if AT_EYE {
                 return (c, c_lo);
@@ -64,7 +64,7 @@ impl Frame {
             (hi, lo + c_lo)
         });
         match self.axes {
-            Axes::Cyclic(0) => LocalRay { o: f.map(|x| x.0), o_lo: f.map(|x| x.1), d },
+            Axes::Cyclic(0) => LocalRay { o: each3(f, |x| x.0), o_lo: each3(f, |x| x.1), d },
             Axes::Cyclic(1) => {
                 LocalRay { o: [f[1].0, f[2].0, f[0].0], o_lo: [f[1].1, f[2].1, f[0].1], d: [d[1], d[2], d[0]] }
             }
@@ -75,14 +75,14 @@ impl Frame {
                 let rows = &maps[m as usize].local_from_world;
                 let mut out = LocalRay { o: d, o_lo: d, d };
                 for (r, row) in rows.iter().enumerate() {
-                    let a: [R; 3] = row.map(R::splat);
+                    let a = splat3::<R>(*row);
                     let (s0, e0) = two_prod(a[0], f[0].0);
                     let (p1, e1) = two_prod(a[1], f[1].0);
                     let (p2, e2) = two_prod(a[2], f[2].0);
                     let (s1, g1) = two_sum(s0, p1);
                     let (s2, g2) = two_sum(s1, p2);
                     out.o[r] = s2;
-                    out.o_lo[r] = ((e0 + e1) + (e2 + g1)) + (g2 + dot(a, f.map(|x| x.1)));
+                    out.o_lo[r] = ((e0 + e1) + (e2 + g1)) + (g2 + dot(a, each3(f, |x| x.1)));
                     out.d[r] = dot(a, d);
                 }
                 out
@@ -94,7 +94,7 @@ impl Frame {
     #[inline(always)]
     pub fn point_to_world<R: Real>(&self, maps: &[LinearMap], p: [R; 3]) -> [R; 3] {
         let v = self.vector_to_world(maps, p);
-        [0, 1, 2].map(|i| v[i] + R::splat(self.centre[i]))
+        three(|i| v[i] + R::splat(self.centre[i]))
     }
 
     /// A local vector in the world.
@@ -104,7 +104,7 @@ impl Frame {
             Axes::Cyclic(0) => v,
             Axes::Cyclic(1) => [v[2], v[0], v[1]],
             Axes::Cyclic(_) => [v[1], v[2], v[0]],
-            Axes::Linear(m) => maps[m as usize].world_from_local.map(|row| dot(row.map(R::splat), v)),
+            Axes::Linear(m) => each3(maps[m as usize].world_from_local, |row| dot(each3(row, R::splat), v)),
         }
     }
 
@@ -115,9 +115,9 @@ impl Frame {
             Axes::Cyclic(_) => self.vector_to_world(maps, n),
             Axes::Linear(m) => {
                 let a = &maps[m as usize].local_from_world;
-                let w: [R; 3] = [0, 1, 2].map(|j| dot([0, 1, 2].map(|i| R::splat(a[i][j])), n));
+                let w: [R; 3] = three(|j| dot(three(|i| R::splat(a[i][j])), n));
                 let scale = R::one() / dot(w, w).sqrt();
-                w.map(|x| x * scale)
+                each3(w, |x| x * scale)
             }
         }
     }
@@ -129,13 +129,15 @@ impl Frame {
         let u = R::UNIT_ROUNDOFF;
         // Of the large part: three products of the map, the sum with the centre, the addition that follows, one to spare.
         let gamma = R::splat(6.0 * u);
-        let size = [0, 1, 2].map(|i| gamma.mul_add(p[i].abs(), error[i]));
+        let size = three(|i| gamma.mul_add(p[i].abs(), error[i]));
         let spread = match self.axes {
             Axes::Cyclic(_) => self.vector_to_world(maps, size),
-            Axes::Linear(m) => maps[m as usize].world_from_local.map(|row| dot(row.map(|x| R::splat(x.abs())), size)),
+            Axes::Linear(m) => {
+                each3(maps[m as usize].world_from_local, |row| dot(each3(row, |x| R::splat(x.abs())), size))
+            }
         };
         // Of the centre: its low part, the sum with it, the addition that follows.
-        [0, 1, 2].map(|i| spread[i] + R::splat(3.0 * u * self.centre[i].abs()))
+        three(|i| spread[i] + R::splat(3.0 * u * self.centre[i].abs()))
     }
 }
 

@@ -5,7 +5,7 @@ use super::shape::Visit;
 use super::surface_pattern::PatternFrame;
 use super::tracer::Candidates;
 use super::world::World;
-use crate::math::real::{Mask, splat3};
+use crate::math::real::{Mask, each3, splat3, three};
 use crate::math::{Lane, Real};
 use crate::render::pattern::Rows;
 
@@ -67,7 +67,7 @@ pub fn occlusion<L: Lane>(
         });
     }
     let zero = L::zero();
-    seen = seen.map(|x| L::select(open, x, zero));
+    seen = each3(seen, |x| L::select(open, x, zero));
     if scratch.transparent.is_empty() || !open.any() {
         return seen;
     }
@@ -89,7 +89,7 @@ pub fn occlusion<L: Lane>(
                         let surface = primitive.surface::<L, false>(tables, o, l, t, part);
                         let at = frame.point(&scratch.spaces, surface.local, surface.n);
                         let factor = frame.transmission(world, &at);
-                        seen = [0, 1, 2].map(|c| L::select(m, seen[c] * factor[c], seen[c]));
+                        seen = three(|c| L::select(m, seen[c] * factor[c], seen[c]));
                     }
                 }
             }
@@ -122,7 +122,7 @@ impl<R: Real> Visit<R> for Dimmed<R> {
     #[inline(always)]
     fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
         let m = valid & R::zero().lt(t) & t.lt(self.distance);
-        self.seen = [0, 1, 2].map(|c| R::select(m, self.seen[c] * self.factor[c], self.seen[c]));
+        self.seen = three(|c| R::select(m, self.seen[c] * self.factor[c], self.seen[c]));
     }
 }
 

@@ -9,7 +9,7 @@
 use super::texture::{Edge, Texture};
 use crate::math::fun;
 use crate::math::noise::{cell_noise, unit_noise, vector_noise};
-use crate::math::real::{Mask, Real, select3, splat3};
+use crate::math::real::{Mask, Real, each3, select3, splat3, three};
 use crate::scene::{Filter, Mapping};
 
 /// The patterns of a world.
@@ -122,11 +122,11 @@ pub struct PatternPoint<'a, R> {
 /// The image of a point.
 #[inline(always)]
 pub fn apply<R: Real>(rows: &Rows, p: [R; 3]) -> [R; 3] {
-    rows.map(|[x, y, z, w]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
+    each3(*rows, |[x, y, z, w]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
 }
 
 fn apply_linear<R: Real>(rows: &[[f64; 3]; 3], p: [R; 3]) -> [R; 3] {
-    rows.map(|[x, y, z]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + R::splat(z) * p[2])
+    each3(*rows, |[x, y, z]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + R::splat(z) * p[2])
 }
 
 impl PatternTable {
@@ -198,11 +198,11 @@ impl PatternTable {
             }
             PatternNode::Add(a, b) => {
                 let (x, y) = (self.eval(*a, at), self.eval(*b, at));
-                [0, 1, 2].map(|i| x[i] + y[i])
+                three(|i| x[i] + y[i])
             }
             PatternNode::Multiply(a, b) => {
                 let (x, y) = (self.eval(*a, at), self.eval(*b, at));
-                [0, 1, 2].map(|i| x[i] * y[i])
+                three(|i| x[i] * y[i])
             }
         }
     }
@@ -225,7 +225,7 @@ impl PatternTable {
 
     fn lerp<R: Real>(&self, a: u32, b: u32, s: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         let (a, b) = (self.eval(a, at), self.eval(b, at));
-        [0, 1, 2].map(|i| (R::one() - s[i]) * a[i] + s[i] * b[i])
+        three(|i| (R::one() - s[i]) * a[i] + s[i] * b[i])
     }
 
     fn blend<R: Real>(&self, stops: &[u32], by: R, at: &PatternPoint<'_, R>) -> [R; 3] {
@@ -239,7 +239,7 @@ impl PatternTable {
                 break;
             }
             let (s, c) = (s.min(R::one()), self.eval(stop, at));
-            out = select3(here, [0, 1, 2].map(|i| (R::one() - s) * out[i] + s * c[i]), out);
+            out = select3(here, three(|i| (R::one() - s) * out[i] + s * c[i]), out);
         }
         out
     }

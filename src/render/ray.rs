@@ -1,6 +1,7 @@
 //! Rays as the kernels see them: in the frame of one shape, with what rounding left out of the origin.
 
 use crate::math::Real;
+use crate::math::real::three;
 
 /// A ray in a shape's own frame. `t` is the same number as in the world.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +18,7 @@ impl<R: Real> LocalRay<R> {
     /// The point at `t`: one rounding on the large part, so nothing is lost to the distance of the origin.
     #[inline(always)]
     pub fn at(&self, t: R) -> [R; 3] {
-        [0, 1, 2].map(|i| t.mul_add(self.d[i], self.o[i]) + self.o_lo[i])
+        three(|i| t.mul_add(self.d[i], self.o[i]) + self.o_lo[i])
     }
 }
 

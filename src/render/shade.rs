@@ -12,7 +12,7 @@ use super::surface_pattern::{PatternFrame, bumped};
 use super::tracer::Candidates;
 use super::world::{PointLight, World};
 use crate::math::fun;
-use crate::math::real::{Mask, dot, minus, scaled, splat3};
+use crate::math::real::{Mask, dot, each3, minus, scaled, splat3, three};
 use crate::math::{Elem, Lane};
 
 /// The hits of one object.
@@ -120,7 +120,7 @@ fn surfaces<L: Lane, const AT_EYE: bool>(
         if frame.has_bump() {
             ns = bumped(frame, &s.spaces, surface.local, surface.n, ns);
         }
-        let face = |n: [L; 3]| n.map(|x| L::select(inside, -x, x));
+        let face = |n: [L; 3]| each3(n, |x| L::select(inside, -x, x));
         store3(&mut s.p, g, surface.p);
         store3(&mut s.n, g, face(surface.n));
         store3(&mut s.ns, g, face(ns));
@@ -161,10 +161,10 @@ fn illuminate<L: Lane>(
             let part = L::load(&hits.part[g..]);
             let seen = occlusion(world, &s.occluders, hits.id, part, o, l, distance, front, &mut s.shadow);
             let zero = L::zero();
-            let arrives: [L; 3] = [0, 1, 2].map(|c| L::select(front, color[c] * seen[c], zero));
+            let arrives: [L; 3] = three(|c| L::select(front, color[c] * seen[c], zero));
             let sum = load3::<L>(&s.diffuse, g);
             let lambert = L::select(front, cosine, zero);
-            store3(&mut s.diffuse, g, [0, 1, 2].map(|c| lambert.mul_add(arrives[c], sum[c])));
+            store3(&mut s.diffuse, g, three(|c| lambert.mul_add(arrives[c], sum[c])));
             if !surfacing.specular.is_zero() {
                 let d = load3::<L>(&hits.rays.d, g);
                 let r = mirrored(d, ns);
@@ -173,7 +173,7 @@ fn illuminate<L: Lane>(
                 let high = power(along, shininess, surfacing.shininess);
                 let high = L::select(front & zero.lt(along), high, zero);
                 let sum = load3::<L>(&s.specular, g);
-                store3(&mut s.specular, g, [0, 1, 2].map(|c| high.mul_add(arrives[c], sum[c])));
+                store3(&mut s.specular, g, three(|c| high.mul_add(arrives[c], sum[c])));
             }
         }
         g += L::WIDTH;
@@ -213,7 +213,7 @@ fn slot<L: Lane>(world: &World, slot: Slot, frame: &PatternFrame<'_>, s: &ShadeS
         Slot::Constant(c) => splat3(c),
         Slot::Pattern(id) => {
             let (n, inside) = (load3::<L>(&s.n, g), L::load(&s.inside[g..]));
-            let outward = n.map(|x| L::select(inside.same(L::one()), -x, x));
+            let outward = each3(n, |x| L::select(inside.same(L::one()), -x, x));
             let at: PatternPoint<'_, L> = frame.point(&s.spaces, load3::<L>(&s.local, g), outward);
             world.patterns.eval(id, &at)
         }
@@ -241,21 +241,21 @@ fn finish<L: Lane>(
         if !m.ambient.is_zero() || !m.diffuse.is_zero() {
             let color = slot::<L>(world, m.color, frame, s, g);
             let share = slot::<L>(world, m.ambient, frame, s, g);
-            let mut light = [0, 1, 2].map(|c| share[c] * ambient[c]);
+            let mut light = three(|c| share[c] * ambient[c]);
             if !m.diffuse.is_zero() {
                 let share = slot::<L>(world, m.diffuse, frame, s, g);
                 let sum = load3::<L>(&s.diffuse, g);
-                light = [0, 1, 2].map(|c| share[c].mul_add(sum[c], light[c]));
+                light = three(|c| share[c].mul_add(sum[c], light[c]));
             }
-            value = [0, 1, 2].map(|c| color[c] * light[c]);
+            value = three(|c| color[c] * light[c]);
         }
         if !m.specular.is_zero() {
             let share = slot::<L>(world, m.specular, frame, s, g);
             let sum = load3::<L>(&s.specular, g);
-            value = [0, 1, 2].map(|c| share[c].mul_add(sum[c], value[c]));
+            value = three(|c| share[c].mul_add(sum[c], value[c]));
         }
         let lanes = L::WIDTH.min(rays.len - g);
-        add_to_slots::<L>(radiance, &rays.slot[g..g + lanes], [0, 1, 2].map(|c| weight[c] * value[c]));
+        add_to_slots::<L>(radiance, &rays.slot[g..g + lanes], three(|c| weight[c] * value[c]));
 
         if mirrors || lets_through {
             let d = load3::<L>(&rays.d, g);
@@ -267,19 +267,19 @@ fn finish<L: Lane>(
             if let Some(ior) = m.ior {
                 let inside = L::load(&s.inside[g..]).same(L::one());
                 let bent = dielectric(d, ns, ior, inside);
-                back = [0, 1, 2].map(|c| through[c].mul_add(bent.reflectance, back[c]));
-                through = through.map(|x| x * (L::one() - bent.reflectance));
+                back = three(|c| through[c].mul_add(bent.reflectance, back[c]));
+                through = each3(through, |x| x * (L::one() - bent.reflectance));
                 onward = bent.direction;
             }
             let live = lanes_below::<L>(rays.len - g);
             let part = L::load(&hits.part[g..]);
-            let from = |o: [L; 3], d: [L; 3], w: [L; 3]| Child { o, d, w: [0, 1, 2].map(|c| weight[c] * w[c]), part };
+            let from = |o: [L; 3], d: [L; 3], w: [L; 3]| Child { o, d, w: three(|c| weight[c] * w[c]), part };
             if mirrors {
                 // A tilted normal may send the mirrored ray into the surface; then the true normal decides.
                 let tilted = mirrored(d, ns);
                 let out = L::zero().lt(dot(tilted, n));
                 let plain = mirrored(d, n);
-                let r = [0, 1, 2].map(|c| L::select(out, tilted[c], plain[c]));
+                let r = three(|c| L::select(out, tilted[c], plain[c]));
                 push(children.mirrored, from(spawn_point(p, n, offset), r, back), live, hits.id, &rays.slot[g..]);
             }
             if lets_through {

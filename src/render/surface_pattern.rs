@@ -6,7 +6,7 @@ use super::place::RESIDUE;
 use super::shape::{Kind, Primitive};
 use super::world::{MadeSpace, World};
 use crate::math::Real;
-use crate::math::real::{axpy, dot, minus, scaled, splat3};
+use crate::math::real::{axpy, dot, each3, minus, scaled, splat3, three};
 
 /// The maps from one primitive's frame to the spaces of its material's patterns.
 pub struct PatternFrame<'w> {
@@ -83,7 +83,7 @@ fn without_residue(mut rows: Rows, by_corners: bool) -> Rows {
 /// A unit normal through the linear map for normals.
 #[inline(always)]
 fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
-    let m = map.map(|row| dot(row.map(R::splat), n));
+    let m = each3(*map, |row| dot(splat3(row), n));
     scaled(R::one() / dot(m, m).sqrt(), m)
 }
 
@@ -102,14 +102,14 @@ pub fn bumped<R: Real>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3],
     // The slope per unit of the made space, along the local vector `v` that takes one step there.
     let h = R::splat(step);
     let slope = |v: [f64; 3]| {
-        let v: [R; 3] = v.map(|x| R::splat(x * step));
+        let v: [R; 3] = each3(v, |x| R::splat(x * step));
         let moved = |side: R| height(axpy(side, v, local));
         (moved(R::one()) - moved(-R::one())) / (h + h)
     };
     let gradient: [R; 3] = match made.made_from_local.inverse() {
         Some(back) => {
             let m = back.linear_f64();
-            [0, 1, 2].map(|i| slope([m[0][i], m[1][i], m[2][i]]))
+            three(|i| slope([m[0][i], m[1][i], m[2][i]]))
         }
         None => {
             // A triangle: slopes along two directions in its plane, made square by Gram and Schmidt.

@@ -13,6 +13,7 @@ use super::ray::Own;
 use super::shade::{Children, Hits, ShadeScratch};
 use super::shape::Visit;
 use super::world::World;
+use crate::math::real::{each3, three};
 use crate::math::{Elem, Lane, Real};
 
 /// Longest list of candidates that every ray of a batch tests in turn; beyond it each ray goes through the tree. A test costs
@@ -208,24 +209,18 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
     rays: &RayBatch<L::Elem>,
     hits: &mut HitColumns<L::Elem>,
 ) {
-    let tables = world.tables();
     let mut g = 0;
     while g < rays.len {
         let d = load3::<L>(&rays.d, g);
         let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
         let (source, part) = (L::load(&rays.source[g..]), L::load(&rays.source_part[g..]));
         let mut best = Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() };
-        let test = |best: &mut Nearest<L>, k: u32| {
-            best.current = L::splat(k as f64);
-            let own = if AT_EYE { None } else { Some(Own { here: source.same(best.current), part }) };
-            world.primitives[k as usize].crossings::<L, AT_EYE>(tables, o, d, own, best);
-        };
         for &k in &candidates.ids {
-            test(&mut best, k);
+            best.test::<AT_EYE>(world, k, o, d, (source, part));
         }
         if candidates.tree {
             world.bvh.traverse(o, d, best.t, |k| {
-                test(&mut best, k);
+                best.test::<AT_EYE>(world, k, o, d, (source, part));
                 best.t
             });
         }
@@ -242,6 +237,16 @@ struct Nearest<R> {
     id: R,
     part: R,
     current: R,
+}
+
+impl<R: Real> Nearest<R> {
+    /// Tests primitive `k` for rays that start on `source` = (primitive, part).
+    #[inline(always)]
+    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, o: [R; 3], d: [R; 3], source: (R, R)) {
+        self.current = R::splat(k as f64);
+        let own = if AT_EYE { None } else { Some(Own { here: source.0.same(self.current), part: source.1 }) };
+        world.primitives[k as usize].crossings::<R, AT_EYE>(world.tables(), o, d, own, self);
+    }
 }
 
 impl<R: Real> Visit<R> for Nearest<R> {
@@ -261,9 +266,9 @@ fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &mut C
     let margin = margin(L::UNIT_ROUNDOFF);
     let origins = bounds_of(&rays.o, rays.len);
     let unit = |i: usize| -> [f64; 3] {
-        let d = [0, 1, 2].map(|c| rays.d[c][i].to_f64());
+        let d = three(|c| rays.d[c][i].to_f64());
         let len = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-        d.map(|x| x / len)
+        each3(d, |x| x / len)
     };
     let sum = (0..rays.len).map(unit).fold([0.0; 3], |s, d| [s[0] + d[0], s[1] + d[1], s[2] + d[2]]);
     let len = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();

@@ -2,7 +2,7 @@
 
 use super::{Ring, TriangleData, Tube, Visit, cuboid, flat, sphere, torus, triangle, tube};
 use crate::math::Real;
-use crate::math::real::{dot, scaled};
+use crate::math::real::{dot, each3, scaled};
 use crate::render::frame::{Frame, LinearMap};
 use crate::render::ray::Own;
 
@@ -110,7 +110,7 @@ impl Primitive {
         if let Kind::Triangle(i) = self.kind {
             let tri = &tables.triangles[i as usize];
             let (point, local) = triangle::point(tri, o, d);
-            let offset = dot(point.n.map(|x| x.abs()), point.error);
+            let offset = dot(each3(point.n, |x| x.abs()), point.error);
             let ns = triangle::shading_normal(tri, local, point.n);
             return Surface { p: point.p, n: point.n, ns, offset, local };
         }
@@ -128,7 +128,7 @@ impl Primitive {
             p: self.frame.point_to_world(tables.maps, point.p),
             n,
             ns: n,
-            offset: dot(n.map(|x| x.abs()), error),
+            offset: dot(each3(n, |x| x.abs()), error),
             local: point.p,
         }
     }

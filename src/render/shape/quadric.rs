@@ -4,7 +4,7 @@
 //! frame's origin, with its rounding errors kept (TwoProd, TwoSum), and the quadratic is solved there with Kahan's
 //! difference of products and the stable pair of roots q/a, c/q.
 
-use crate::math::real::{difference_of_products, dot, two_sum};
+use crate::math::real::{difference_of_products, dot, three, two_sum};
 use crate::math::{Mask, Real};
 use crate::render::ray::LocalRay;
 
@@ -34,7 +34,7 @@ pub struct Roots<R: Real> {
 pub fn roots<R: Real>(ray: &LocalRay<R>, form: &impl Quadric<R>) -> Roots<R> {
     let (zero, d) = (R::zero(), ray.d);
     let t0 = -(dot(ray.o, d) / dot(d, d));
-    let m = [0, 1, 2].map(|i| {
+    let m = three(|i| {
         let p = t0 * d[i];
         let e = t0.mul_sub(d[i], p);
         let (s, se) = two_sum(ray.o[i], p);

@@ -6,7 +6,7 @@
 use super::{Point, SIDE, Visit};
 use crate::math::Real;
 use crate::math::fun::sqrt;
-use crate::math::real::{dot, two_sum};
+use crate::math::real::{dot, each3, three, two_sum};
 use crate::render::ray::{LocalRay, Own};
 
 /// A ring around the y axis, of unit magnitude: fourth powers of its lengths stay in range whatever the scene's scale.
@@ -52,19 +52,19 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
 #[inline(always)]
 pub(super) fn point<R: Real>(ring: &Ring, p: [R; 3]) -> Point<R> {
     let (to_unit, to_scene) = (R::splat(ring.scale), R::splat(1.0 / ring.scale));
-    let p = p.map(|x| x * to_unit);
+    let p = each3(p, |x| x * to_unit);
     let rho = p[0].mul_add(p[0], p[2] * p[2]).sqrt();
     let s = R::splat(ring.r) / rho;
     let c = [p[0] * s, R::zero(), p[2] * s];
     let v = [p[0] - c[0], p[1], p[2] - c[2]];
     let scale = R::one() / dot(v, v).sqrt();
-    let n = v.map(|x| x * scale);
+    let n = each3(v, |x| x * scale);
     let tube = R::splat(ring.tube);
-    let q = [0, 1, 2].map(|i| tube.mul_add(n[i], c[i]));
+    let q = three(|i| tube.mul_add(n[i], c[i]));
     // Circle 5 of r, tube 8 of its radius, their sum 1.
     let u = R::UNIT_ROUNDOFF;
     let error = R::splat(6.0 * u * ring.r + 9.0 * u * ring.tube);
-    Point { p: q.map(|x| x * to_scene), n, error: [error * to_scene; 3] }
+    Point { p: each3(q, |x| x * to_scene), n, error: [error * to_scene; 3] }
 }
 
 /// The up to four t at which a line meets the ring, in order; NaN for those that don't exist.

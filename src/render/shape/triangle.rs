@@ -5,7 +5,7 @@
 //! place of their double-precision fallback.
 
 use super::{Point, Visit};
-use crate::math::real::{axpy, difference_of_products, minus, scaled, splat3};
+use crate::math::real::{axpy, difference_of_products, each3, minus, scaled, splat3, three};
 use crate::math::{Mask, Real};
 use crate::render::ray::Own;
 
@@ -35,9 +35,8 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let (ax, ay, az) = (d[0].abs(), d[1].abs(), d[2].abs());
     let z_most = ax.le(az) & ay.le(az);
     let x_most = !z_most & ay.le(ax);
-    let turn = |v: [R; 3]| -> [R; 3] {
-        [0usize, 1, 2].map(|i| R::select(z_most, v[i], R::select(x_most, v[(i + 1) % 3], v[(i + 2) % 3])))
-    };
+    let turn =
+        |v: [R; 3]| -> [R; 3] { three(|i| R::select(z_most, v[i], R::select(x_most, v[(i + 1) % 3], v[(i + 2) % 3]))) };
     let d = turn(d);
     let sz = R::one() / d[2];
     let (sx, sy) = (d[0] * sz, d[1] * sz);
@@ -56,7 +55,7 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let hit = !(negative & positive) & !det.same(zero);
     // Weights before the sum: products of an edge's determinant with a length would leave the range that squares allow.
     let inverse = R::one() / det;
-    let w = e.map(|x| x * inverse);
+    let w = each3(e, |x| x * inverse);
     let t = w[0].mul_add(a[2], w[1].mul_add(b[2], w[2] * c[2])) * sz;
     Edges { e, det, t, hit }
 }
@@ -87,12 +86,12 @@ pub(super) fn crossing<R: Real>(
 pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point<R>, [R; 3]) {
     let x = edges(tri, o, d);
     let (beta, gamma) = (x.e[1] / x.det, x.e[2] / x.det);
-    let v: [[R; 3]; 3] = tri.v.map(splat3);
+    let v: [[R; 3]; 3] = each3(tri.v, splat3);
     // From the first corner along the edges: a coordinate that all corners share is then met exactly.
     let p = axpy(gamma, minus(v[2], v[0]), axpy(beta, minus(v[1], v[0]), v[0]));
     // Weights 6 each of their share, edges 1, products and sums 3, the addition that follows 1: of the corners' magnitudes.
     let g = R::splat(12.0 * R::UNIT_ROUNDOFF);
-    let error = [0, 1, 2].map(|i| g * (v[0][i].abs() + v[1][i].abs() + v[2][i].abs()));
+    let error = three(|i| g * (v[0][i].abs() + v[1][i].abs() + v[2][i].abs()));
     (Point { p, n: splat3(tri.n), error }, [beta, R::zero(), gamma])
 }
 
@@ -100,7 +99,7 @@ pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point
 #[inline(always)]
 pub(super) fn shading_normal<R: Real>(tri: &TriangleData, local: [R; 3], n: [R; 3]) -> [R; 3] {
     let Some(shading) = tri.shading else { return n };
-    let s: [[R; 3]; 3] = shading.map(splat3);
+    let s: [[R; 3]; 3] = each3(shading, splat3);
     let (b, c) = (local[0], local[2]);
     let a = R::one() - b - c;
     let m = axpy(c, s[2], axpy(b, s[1], scaled(a, s[0])));

@@ -7,6 +7,7 @@
 use super::quadric::{Quadric, roots};
 use super::{BOTTOM, Point, SIDE, TOP, Visit};
 use crate::math::Real;
+use crate::math::real::three;
 use crate::render::ray::{LocalRay, Own};
 
 /// A profile: at height y the radius is `radius + slope·y`, for y from `bottom` to `top`. Nowhere in between negative.
@@ -116,7 +117,7 @@ pub(super) fn point<R: Real>(tube: &Tube, p: [R; 3], part: R) -> Point<R> {
 
     let pick = |side: R, apex: R, cap: R| R::select(on_side, R::select(at_axis, apex, side), cap);
     let q = [R::select(on_side, ex * w, p[0]), R::select(on_side, p[1], cap_y), R::select(on_side, ez * w, p[2])];
-    let n = [0, 1, 2].map(|i| pick(side_n[i], apex_n[i], cap_n[i]));
+    let n = three(|i| pick(side_n[i], apex_n[i], cap_n[i]));
     // Radius 2, of the sum's larger part; dot and root 3, quotient 1, products 2, and one to spare. A cap's height is exact.
     let gamma = R::splat(9.0 * R::UNIT_ROUNDOFF);
     let reach = gamma * (R::splat(tube.radius) + (slope * p[1]).abs());
