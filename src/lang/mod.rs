@@ -1,6 +1,12 @@
 //! From text to scene: grammar, evaluation, vocabulary, and the messages when something is wrong.
 
+mod ast;
+mod limits;
+mod parse;
 pub mod request;
+mod scan;
+mod suggest;
+mod syntax;
 
 pub use request::{Evaluated, Failure, Input, Param, ParamKind, Request};
 

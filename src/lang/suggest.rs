@@ -1,0 +1,55 @@
+//! "Did you mean …?": the nearest spelling among the names that would be right.
+
+/// The candidate nearest to `word` by Damerau–Levenshtein distance, if it is near enough: a third of the word's letters,
+/// at least one. Of equally near ones the first wins. Case is ignored at first: `Sphere` is `sphere`.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let cutoff = (word.chars().count() / 3).max(1);
+    let lower = word.to_lowercase();
+    candidates
+        .into_iter()
+        .filter(|c| *c != word)
+        .map(|c| (strsim::damerau_levenshtein(&lower, &c.to_lowercase()), c))
+        .filter(|(d, _)| *d <= cutoff)
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, c)| c)
+}
+
+/// `did you mean …?`, or nothing.
+pub fn did_you_mean(best: Option<&str>) -> String {
+    best.map_or(String::new(), |b| format!("did you mean `{b}`?"))
+}
+
+/// `a, b or c`, each in back quotes.
+pub fn or_list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = words.into_iter().map(|w| format!("`{w}`")).collect();
+    join_or(&quoted)
+}
+
+/// `a, b or c`.
+pub fn join_or(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [head @ .., last] => format!("{} or {last}", head.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_words_are_found_and_far_ones_are_not() {
+        let words = ["r", "at", "mat", "name", "radius", "sphere"];
+        assert_eq!(nearest("raduis", words), Some("radius"));
+        assert_eq!(nearest("Sphere", words), Some("sphere"));
+        assert_eq!(nearest("cylinder", words), None);
+        assert_eq!(nearest("ma", words), Some("at"), "a swap or a change is one step; the first of equals wins");
+    }
+
+    #[test]
+    fn lists_read_well() {
+        assert_eq!(or_list(["a", "b", "c"]), "`a`, `b` or `c`");
+        assert_eq!(or_list([]), "");
+    }
+}
