@@ -1,7 +1,7 @@
 //! What goes wrong while a scene is evaluated: first without a place, then with one.
 
 use super::value::Value;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Span};
 
 /// A mistake found by an operator or a built-in word, which don't know where they stand.
 #[derive(Debug)]
@@ -16,6 +16,8 @@ pub struct Fault {
     pub argument: Option<usize>,
     /// What to write instead of the text under the caret.
     pub fix: Option<String>,
+    /// Another place that it has to do with.
+    pub other: Option<(Span, String)>,
     /// A budget is used up: evaluating on makes no sense.
     pub fatal: bool,
 }
@@ -30,6 +32,7 @@ impl Fault {
             notes: Vec::new(),
             argument: None,
             fix: None,
+            other: None,
             fatal: false,
         })
     }
@@ -49,9 +52,18 @@ impl Fault {
         self.notes.push(text.into());
         self
     }
+    /// A line of explanation where there is none yet.
+    pub fn note_once(self: Box<Self>, text: impl Into<String>) -> Box<Fault> {
+        if self.notes.is_empty() { self.note(text) } else { self }
+    }
     /// A replacement.
     pub fn fix(mut self: Box<Self>, text: impl Into<String>) -> Box<Fault> {
         self.fix = Some(text.into());
+        self
+    }
+    /// Shows another place.
+    pub fn and_at(mut self: Box<Self>, span: Span, text: impl Into<String>) -> Box<Fault> {
+        self.other = Some((span, text.into()));
         self
     }
     /// It is about one argument.

@@ -14,6 +14,35 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, c)| c)
 }
 
+/// What other scene languages call properties, and what they are called here.
+const SYNONYMS: [(&str, &str); 14] = [
+    ("radius", "r"),
+    ("center", "at"),
+    ("centre", "at"),
+    ("position", "at"),
+    ("location", "from"),
+    ("look_at", "at"),
+    ("target", "at"),
+    ("material", "mat"),
+    ("colour", "color"),
+    ("roughness", "shininess"),
+    ("reflection", "reflect"),
+    ("transparency", "transmit"),
+    ("intensity", "power"),
+    ("open", "caps"),
+];
+
+/// Like [`nearest`], for the names of properties: also finds one by what others call it, itself misspelt perhaps.
+pub fn nearest_property<'a>(word: &str, names: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
+    nearest(word, names.clone()).or_else(|| {
+        let usable = SYNONYMS.iter().filter(|(_, here)| names.clone().any(|n| n == *here));
+        let foreign: Vec<&str> = usable.clone().map(|(there, _)| *there).collect();
+        let meant = foreign.iter().find(|f| **f == word).copied().or_else(|| nearest(word, foreign.iter().copied()))?;
+        let (_, here) = usable.clone().find(|(there, _)| *there == meant)?;
+        names.clone().find(|n| n == here)
+    })
+}
+
 /// `did you mean …?`, or nothing.
 pub fn did_you_mean(best: Option<&str>) -> String {
     best.map_or(String::new(), |b| format!("did you mean `{b}`?"))
@@ -45,6 +74,14 @@ mod tests {
         assert_eq!(nearest("Sphere", words), Some("sphere"));
         assert_eq!(nearest("cylinder", words), None);
         assert_eq!(nearest("ma", words), Some("at"), "a swap or a change is one step; the first of equals wins");
+    }
+
+    #[test]
+    fn properties_are_known_by_other_names_too() {
+        let names = ["at", "r", "mat", "name"];
+        assert_eq!(nearest_property("raduis", names.into_iter()), Some("r"));
+        assert_eq!(nearest_property("centre", names.into_iter()), Some("at"));
+        assert_eq!(nearest_property("banana", names.into_iter()), None);
     }
 
     #[test]
