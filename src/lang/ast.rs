@@ -31,18 +31,37 @@ pub enum ExprKind {
     Name(EcoString),
     List(Vec<Expr>),
     Lambda(Box<Function>),
-    If { arms: Vec<(Expr, Block)>, otherwise: Option<Block> },
+    If {
+        arms: Vec<(Expr, Block)>,
+        otherwise: Option<Block>,
+    },
     For(Box<For>),
     Block(Block),
     /// `group(…) { … }`
-    Group { args: Vec<Arg>, body: Block },
+    Group {
+        args: Vec<Arg>,
+        body: Block,
+    },
     Negate(Box<Expr>),
     Not(Box<Expr>),
-    Binary { op: Op, op_span: Span, a: Box<Expr>, b: Box<Expr> },
+    Binary {
+        op: Op,
+        a: Box<Expr>,
+        b: Box<Expr>,
+    },
     /// A call; `x |> f(y)` is one too, with `x` as first argument.
-    Call { callee: Box<Expr>, args: Vec<Arg> },
-    Index { of: Box<Expr>, index: Box<Expr> },
-    Field { of: Box<Expr>, field: Ident },
+    Call {
+        callee: Box<Expr>,
+        args: Vec<Arg>,
+    },
+    Index {
+        of: Box<Expr>,
+        index: Box<Expr>,
+    },
+    Field {
+        of: Box<Expr>,
+        field: Ident,
+    },
 }
 
 #[derive(Debug)]
@@ -55,8 +74,6 @@ pub enum TextPart {
 pub struct Arg {
     pub name: Option<Ident>,
     pub value: Expr,
-    /// Came in by `|>`.
-    pub piped: bool,
 }
 
 #[derive(Debug)]
@@ -93,16 +110,40 @@ pub struct Statement {
 
 #[derive(Debug)]
 pub enum StatementKind {
-    Let { name: Ident, value: Expr, export: bool },
-    Var { name: Ident, value: Expr },
-    Assign { name: Ident, op: Option<Op>, op_span: Span, value: Expr },
-    Fn { name: Ident, function: Function, export: bool },
-    While { condition: Expr, body: Block },
-    Import { path: Path, names: ImportNames },
+    Let {
+        name: Ident,
+        value: Expr,
+        export: bool,
+    },
+    Var {
+        name: Ident,
+        value: Expr,
+    },
+    Assign {
+        name: Ident,
+        op: Option<Op>,
+        op_span: Span,
+        value: Expr,
+    },
+    Fn {
+        name: Ident,
+        function: Function,
+        export: bool,
+    },
+    While {
+        condition: Expr,
+        body: Block,
+    },
+    Import {
+        path: Path,
+        names: ImportNames,
+    },
     Param(Box<ParamStatement>),
     Expr(Expr),
     /// A statement with a syntax error, reported already, and the name that it was to bind.
-    Broken { name: Option<EcoString> },
+    Broken {
+        name: Option<EcoString>,
+    },
 }
 
 #[derive(Debug)]
@@ -176,8 +217,22 @@ impl Op {
     pub fn from_symbol(s: &str) -> Option<Op> {
         use Op::*;
         [
-            Or, And, Equal, NotEqual, Less, LessEqual, Greater, GreaterEqual, Range, RangeInclusive, Add, Subtract, Multiply,
-            Divide, Remainder, Power,
+            Or,
+            And,
+            Equal,
+            NotEqual,
+            Less,
+            LessEqual,
+            Greater,
+            GreaterEqual,
+            Range,
+            RangeInclusive,
+            Add,
+            Subtract,
+            Multiply,
+            Divide,
+            Remainder,
+            Power,
         ]
         .into_iter()
         .find(|op| op.symbol() == s)

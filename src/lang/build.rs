@@ -66,7 +66,13 @@ impl Build {
     }
 
     /// Stores a node.
-    pub fn node(&mut self, kind: NodeKind, material: Option<MaterialId>, name: Option<String>, place: Place) -> Result<Value, Box<Fault>> {
+    pub fn node(
+        &mut self,
+        kind: NodeKind,
+        material: Option<MaterialId>,
+        name: Option<String>,
+        place: Place,
+    ) -> Result<Value, Box<Fault>> {
         self.check_count(self.scene.nodes.len(), "shapes, lights and groups")?;
         self.scene.nodes.push(Node { kind, material, name, place });
         Ok(Value::Node(NodeId(self.scene.nodes.len() as u32 - 1)))

@@ -172,7 +172,9 @@ impl<'p> Machine<'p> {
                     Some(arg) => Fault::new(format!("`{name}` has no parameter `{arg}`"))
                         .label(did_you_mean(nearest(arg, names.iter().copied()))),
                     None => match params.get(next - 1) {
-                        Some((p, _, _)) => Fault::new(format!("`{p}` of `{name}` must be named")).label(format!("write `{p}: …`")),
+                        Some((p, _, _)) => {
+                            Fault::new(format!("`{p}` of `{name}` must be named")).label(format!("write `{p}: …`"))
+                        }
                         None => Fault::new(format!("`{name}` is given too many values")),
                     },
                 };
@@ -186,7 +188,9 @@ impl<'p> Machine<'p> {
             }
             placed[index] = value;
         }
-        if let Some((missing, _, _)) = params.iter().zip(&placed).find(|((_, r, _), v)| *r && matches!(v, Value::Unset)).map(|(p, _)| p) {
+        if let Some((missing, _, _)) =
+            params.iter().zip(&placed).find(|((_, r, _), v)| *r && matches!(v, Value::Unset)).map(|(p, _)| p)
+        {
             return Err(self.fail(Fault::new(format!("`{name}` needs `{missing}`")), span));
         }
         match function {

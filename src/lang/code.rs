@@ -2,7 +2,7 @@
 
 use super::ast::Op;
 use super::value::{BuiltinId, FunctionId, Value};
-use crate::diag::{FileId, Span};
+use crate::diag::Span;
 use ecow::EcoString;
 
 /// A piece of program and its text.
@@ -31,7 +31,10 @@ pub enum Code {
     Binary(Op, Box<(Node, Node)>),
     And(Box<(Node, Node)>),
     Or(Box<(Node, Node)>),
-    If { arms: Box<[(Node, Node)]>, otherwise: Option<Box<Node>> },
+    If {
+        arms: Box<[(Node, Node)]>,
+        otherwise: Option<Box<Node>>,
+    },
     For(Box<ForCode>),
     While(Box<(Node, Node)>),
     /// The last one is the value.
@@ -45,12 +48,25 @@ pub enum Code {
     SetLocal(u32, Box<Node>),
     SetGlobal(u32, Box<Node>),
     /// Arguments with the places of their parameters; those of a rest parameter count on.
-    CallBuiltin { word: BuiltinId, args: Box<[(u16, Node)]> },
+    CallBuiltin {
+        word: BuiltinId,
+        args: Box<[(u16, Node)]>,
+    },
     /// A function known beforehand: one argument a parameter. `callee` is its value, where it carries captures.
-    Call { function: FunctionId, callee: Option<Box<Node>>, args: Box<[Option<Node>]> },
-    CallValue { callee: Box<Node>, args: Box<[ArgCode]> },
+    Call {
+        function: FunctionId,
+        callee: Option<Box<Node>>,
+        args: Box<[Option<Node>]>,
+    },
+    CallValue {
+        callee: Box<Node>,
+        args: Box<[ArgCode]>,
+    },
     Record(Box<[ArgCode]>),
-    Group { args: Box<[(u16, Node)]>, body: Box<Node> },
+    Group {
+        args: Box<[(u16, Node)]>,
+        body: Box<Node>,
+    },
     Index(Box<(Node, Node)>),
     Field(Box<Node>, EcoString),
     With(Box<Node>, Box<[ArgCode]>),
@@ -138,7 +154,6 @@ pub struct TopStatement {
 /// A file.
 #[derive(Debug)]
 pub struct ModuleCode {
-    pub file: FileId,
     pub statements: Vec<TopStatement>,
     pub slots: u32,
     /// Functions of the top level and their slots: there before anything runs.

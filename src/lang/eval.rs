@@ -251,7 +251,9 @@ impl<'p> Machine<'p> {
         if self.text_bytes > self.limits.text_total {
             let most = self.limits.text_total;
             let note = "usually a loop that runs too often";
-            return Err(self.fail(Fault::budget(format!("the scene makes more than {most} letters of text"), note), span));
+            return Err(
+                self.fail(Fault::budget(format!("the scene makes more than {most} letters of text"), note), span)
+            );
         }
         Ok(Value::Text(out))
     }
@@ -289,7 +291,9 @@ impl<'p> Machine<'p> {
                 Err(self.fail(
                     match other {
                         Value::Function(_) | Value::Builtin(_) => fault.note("to call it, write `( )` after it"),
-                        Value::Material(_) | Value::Pattern(_) => fault.note("a material goes on a shape: `sphere(mat: …)`"),
+                        Value::Material(_) | Value::Pattern(_) => {
+                            fault.note("a material goes on a shape: `sphere(mat: …)`")
+                        }
                         _ => fault.note("give a value a name with `let`"),
                     },
                     span,
@@ -332,7 +336,9 @@ impl<'p> Machine<'p> {
         let i = index.show(40);
         let fault = match n {
             0 => Fault::new("the list is empty"),
-            _ => Fault::new(format!("the list has no item {i}")).note(format!("its {n} items count from 0 to {}", n - 1)),
+            _ => {
+                Fault::new(format!("the list has no item {i}")).note(format!("its {n} items count from 0 to {}", n - 1))
+            }
         };
         Err(self.fail(fault, span))
     }

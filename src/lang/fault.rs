@@ -24,7 +24,6 @@ pub struct Fault {
 
 impl Fault {
     /// A mistake of the whole expression.
-    #[expect(clippy::new_ret_no_self, reason = "boxed, so that results stay small")]
     pub fn new(message: impl Into<String>) -> Box<Fault> {
         Box::new(Fault {
             message: message.into(),

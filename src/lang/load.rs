@@ -105,7 +105,8 @@ impl Loader {
     /// Parses a file, reads its imports, and adds it.
     fn module(&mut self, file: FileId) -> usize {
         let text = self.sources.get(file).text.clone();
-        let (statements, errors) = if text.ends_with('\u{FFFD}') { (Vec::new(), Vec::new()) } else { parse(file, &text) };
+        let (statements, errors) =
+            if text.ends_with('\u{FFFD}') { (Vec::new(), Vec::new()) } else { parse(file, &text) };
         self.errors.extend(errors);
         let mut imports = Vec::new();
         for s in &statements {
@@ -149,7 +150,8 @@ impl Loader {
                 Some(index)
             }
             Err(e) => {
-                self.errors.push(Diagnostic::error(format!("can't read `{}`: {}", path.text, reason(&e))).at(path.span, ""));
+                self.errors
+                    .push(Diagnostic::error(format!("can't read `{}`: {}", path.text, reason(&e))).at(path.span, ""));
                 None
             }
         };

@@ -126,6 +126,7 @@ impl<'p> Machine<'p> {
 
     /// Gives a fault its place and the calls that led there.
     #[cold]
+    #[expect(clippy::boxed_local, reason = "faults travel boxed")]
     pub fn locate(&self, fault: Box<Fault>, span: Span, args: &[(u16, Node)]) -> Stop {
         let fault = *fault;
         let main = fault
@@ -190,7 +191,10 @@ impl<'p> Machine<'p> {
                 let call = if self.record_arguments {
                     self.call_text(c)
                 } else {
-                    self.program.functions.get(c.function.0 as usize).map_or(String::new(), |f| format!("{}(…)", f.name))
+                    self.program
+                        .functions
+                        .get(c.function.0 as usize)
+                        .map_or(String::new(), |f| format!("{}(…)", f.name))
                 };
                 let frame = CallFrame { call: call.into(), span: c.span, parent };
                 self.calls[i].frame = Some(Arc::new(frame));
@@ -253,7 +257,9 @@ impl Host for Machine<'_> {
 pub fn word_name(value: &Value, program: &Program) -> String {
     match value {
         Value::Builtin(id) => catalog::word(*id).name.to_owned(),
-        Value::Function(c) => program.functions.get(c.function.0 as usize).map_or(String::new(), |f| f.name.to_string()),
+        Value::Function(c) => {
+            program.functions.get(c.function.0 as usize).map_or(String::new(), |f| f.name.to_string())
+        }
         _ => String::new(),
     }
 }

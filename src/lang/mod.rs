@@ -1,13 +1,13 @@
 //! From text to scene: grammar, evaluation, vocabulary, and the messages when something is wrong.
 //!
-//! The way of a text: [`load`] reads files and has them [`parse`]d, statement by statement, into the [`ast`]; [`resolve`]
-//! turns names into slots and makes the [`code`] that [`eval`] runs; [`catalog`] is the vocabulary; [`build`] holds the
-//! scene meanwhile; [`finish`] takes the last look. Mistakes of all phases come out together, in the order of the text.
+//! The way of a text: `load` reads files and has them `parse`d, statement by statement, into the `ast`; `resolve` turns
+//! names into slots and makes the `code` that `eval` runs; [`catalog`] is the vocabulary; `build` holds the scene
+//! meanwhile; `finish` takes the last look. Mistakes of all phases come out together, in the order of the text.
 
 mod ast;
 mod build;
 mod call;
-mod catalog;
+pub mod catalog;
 mod code;
 mod eval;
 mod fault;
@@ -28,7 +28,7 @@ mod syntax;
 #[cfg(test)]
 mod tests;
 mod value;
-mod word;
+pub mod word;
 
 pub use request::{Evaluated, Failure, Input, Param, ParamKind, Request};
 
@@ -70,7 +70,12 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
     let start = Instant::now();
     let (mut loader, read) = Loader::load(request, limits);
     if let Err(d) = read {
-        return Err(Failure { diagnostics: vec![d], sources: loader.sources, files: loader.files, main_unreadable: true });
+        return Err(Failure {
+            diagnostics: vec![d],
+            sources: loader.sources,
+            files: loader.files,
+            main_unreadable: true,
+        });
     }
     let mut errors = std::mem::take(&mut loader.errors);
     let main = loader.modules.last().map_or(FileId(0), |m| m.file);
@@ -82,7 +87,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
     let mut resolver = Resolver::default();
     let last = loader.modules.len().saturating_sub(1);
     for (i, m) in loader.modules.iter().enumerate() {
-        resolver.file(m.file, &m.statements, &m.imports, i == last);
+        resolver.file(&m.statements, &m.imports, i == last);
     }
     let nodes = set_nodes(request, &mut loader.sources, &mut resolver);
     errors.append(&mut resolver.errors);
@@ -177,7 +182,8 @@ fn unknown_params(loader: &Loader, nodes: &[SetNode]) -> Diagnostics {
     unknown
         .map(|(name, _, span, _)| {
             let best = suggest::nearest(name, declared.iter().copied());
-            let d = Diagnostic::error(format!("the scene has no parameter `{name}`")).at(*span, suggest::did_you_mean(best));
+            let d = Diagnostic::error(format!("the scene has no parameter `{name}`"))
+                .at(*span, suggest::did_you_mean(best));
             match &declared[..] {
                 [] => d.note("it has no parameters"),
                 some => d.note(format!("its parameters: {}", some.join(", "))),

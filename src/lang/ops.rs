@@ -71,12 +71,8 @@ fn compare(op: Op, a: &Value, b: &Value, build: &Build) -> Made {
         _ => None,
     };
     let Some(order) = order else {
-        let fault = Fault::new(format!(
-            "`{}` can't compare {} and {}",
-            op.symbol(),
-            kind_of(a, build),
-            kind_of(b, build)
-        ));
+        let fault =
+            Fault::new(format!("`{}` can't compare {} and {}", op.symbol(), kind_of(a, build), kind_of(b, build)));
         return Err(match (a, b) {
             (Value::Bool(_), _) => fault.note("for `a < b < c` write `a < b and b < c`"),
             (Value::Number(_), Value::Angle(_)) | (Value::Angle(_), Value::Number(_)) => {
@@ -123,7 +119,9 @@ fn arithmetic(op: Op, a: &Value, b: &Value, build: &mut Build, span: Span) -> Ma
         (Angle(x), Angle(y)) if op == Op::Divide => numbers(op, *x, *y).map(Number),
         (Angle(x), Number(y)) if matches!(op, Op::Multiply | Op::Divide) => numbers(op, *x, *y).map(Angle),
         (Number(x), Angle(y)) if op == Op::Multiply => numbers(op, *x, *y).map(Angle),
-        (Value::Color(x), Value::Color(y)) if matches!(op, Op::Add | Op::Subtract | Op::Multiply) => color(op, x.0, y.0),
+        (Value::Color(x), Value::Color(y)) if matches!(op, Op::Add | Op::Subtract | Op::Multiply) => {
+            color(op, x.0, y.0)
+        }
         (Value::Color(x), Number(y)) if matches!(op, Op::Multiply | Op::Divide) => color(op, x.0, [*y; 3]),
         (Number(x), Value::Color(y)) if op == Op::Multiply => color(op, [*x; 3], y.0),
         (Pattern(_), Pattern(_) | Number(_) | Value::Color(_)) | (Number(_) | Value::Color(_), Pattern(_)) => {

@@ -64,7 +64,10 @@ impl<'p> Machine<'p> {
             });
             return match texts {
                 Some(t) if !t.is_empty() => Ok(ParamKind::Choice(t)),
-                _ => Err(self.fail(Fault::new("`of` takes a list of texts").note("as in `of [\"matte\", \"glass\"]`"), node.span)),
+                _ => Err(self.fail(
+                    Fault::new("`of` takes a list of texts").note("as in `of [\"matte\", \"glass\"]`"),
+                    node.span,
+                )),
             };
         }
         let range = match &p.range {
@@ -112,7 +115,10 @@ impl<'p> Machine<'p> {
                     && !(*lo..=*hi).contains(n)
                 {
                     let (lo, hi) = (number_text(*lo), number_text(*hi));
-                    Fault::new(format!("parameter `{name}` must be from {lo}{unit} to {hi}{unit}, got {}", value.show(40)))
+                    Fault::new(format!(
+                        "parameter `{name}` must be from {lo}{unit} to {hi}{unit}, got {}",
+                        value.show(40)
+                    ))
                 } else if *whole && n.fract() != 0.0 {
                     Fault::new(format!("parameter `{name}` must be a whole number, got {}", value.show(40)))
                 } else {
@@ -128,7 +134,9 @@ impl<'p> Machine<'p> {
             | (ParamKind::Color, Value::Color(_))
             | (ParamKind::Text, Value::Text(_))
             | (ParamKind::Other, _) => return Ok(()),
-            (ParamKind::Number { unit: "deg", .. }, _) => Fault::new(format!("parameter `{name}` is an angle, got {got}")),
+            (ParamKind::Number { unit: "deg", .. }, _) => {
+                Fault::new(format!("parameter `{name}` is an angle, got {got}"))
+            }
             (ParamKind::Number { .. }, _) => Fault::new(format!("parameter `{name}` is a number, got {got}")),
             (ParamKind::Switch, _) => Fault::new(format!("parameter `{name}` is true or false, got {got}")),
             (ParamKind::Color, _) => Fault::new(format!("parameter `{name}` is a color, got {got}")),

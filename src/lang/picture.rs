@@ -17,7 +17,8 @@ pub fn open(path: &Path, limits: &Limits) -> Result<Image, String> {
     let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) = reader.format() else {
         return Err("it is neither a PNG nor a JPEG file".into());
     };
-    let damaged = || format!("it is damaged: not a complete {} file", if format == ImageFormat::Png { "PNG" } else { "JPEG" });
+    let damaged =
+        || format!("it is damaged: not a complete {} file", if format == ImageFormat::Png { "PNG" } else { "JPEG" });
     let (width, height) = reader.into_dimensions().map_err(|_| damaged())?;
     if width == 0 || height == 0 {
         return Err(damaged());

@@ -7,7 +7,7 @@ use super::scope::{Access, At, Binding, Kind, Level, Scopes};
 use super::suggest::{did_you_mean, nearest};
 use super::value::{BuiltinId, FunctionId, Value};
 use super::word::{self, Run};
-use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
+use crate::diag::{Diagnostic, Diagnostics, Span};
 use ecow::EcoString;
 
 /// What a block does with its expressions.
@@ -56,7 +56,7 @@ pub struct Resolver {
 
 impl Resolver {
     /// Adds a file. `imports` has one entry an `import` statement: the module's index, or `None` where it couldn't be read.
-    pub fn file(&mut self, file: FileId, statements: &[Statement], imports: &[Option<usize>], main: bool) {
+    pub fn file(&mut self, statements: &[Statement], imports: &[Option<usize>], main: bool) {
         self.scopes = Scopes::default();
         self.main = main;
         self.scopes.levels.push(Level::default());
@@ -70,7 +70,7 @@ impl Resolver {
         }
         let level = self.scopes.levels.pop().unwrap_or_default();
         self.exports.push(exports(statements, &level));
-        self.program.modules.push(ModuleCode { file, statements: out, slots: level.slots, functions });
+        self.program.modules.push(ModuleCode { statements: out, slots: level.slots, functions });
     }
 
     /// An expression that sees the built-in words only; an unknown word alone is a text.
@@ -158,13 +158,17 @@ impl Resolver {
         }
         let d = Diagnostic::error(format!("the module exports no `{}`", name.name));
         let d = if exports.private.contains(&name.name) {
-            d.at(name.span, "it isn't exported").note(format!("write `export` before it there: `export let {} = …`", name.name))
+            d.at(name.span, "it isn't exported")
+                .note(format!("write `export` before it there: `export let {} = …`", name.name))
         } else {
             let best = nearest(&name.name, exports.names.iter().map(|e| e.name.as_str()));
             let d = d.at(name.span, did_you_mean(best));
             match &exports.names[..] {
                 [] => d.note("it exports nothing"),
-                names => d.note(format!("it exports: {}", names.iter().map(|e| e.name.as_str()).collect::<Vec<_>>().join(", "))),
+                names => d.note(format!(
+                    "it exports: {}",
+                    names.iter().map(|e| e.name.as_str()).collect::<Vec<_>>().join(", ")
+                )),
             }
         };
         self.errors.push(d);
@@ -293,7 +297,9 @@ impl Resolver {
                 None => (block.span, "it is empty"),
             };
             self.errors.push(
-                Diagnostic::error("this block has no value").at(span, text).note("the last line of a block is its value"),
+                Diagnostic::error("this block has no value")
+                    .at(span, text)
+                    .note("the last line of a block is its value"),
             );
             nodes.push(Node { code: Code::Failed, span: block.span });
         }
@@ -367,7 +373,8 @@ impl Resolver {
                 Kind::Loop => "the loop sets it",
                 _ => "it is bound here",
             };
-            let d = Diagnostic::error(format!("`{}` can't be changed", name.name)).at(name.span, "").at(binding.span, how);
+            let d =
+                Diagnostic::error(format!("`{}` can't be changed", name.name)).at(name.span, "").at(binding.span, how);
             self.errors.push(if binding.kind == Kind::Let {
                 d.note(format!("for a value that changes write `var {} = …`", name.name))
             } else {
@@ -502,7 +509,8 @@ impl Resolver {
         let otherwise = otherwise.map(|b| Box::new(self.block(b, mode)));
         if mode == Mode::Value && otherwise.is_none() {
             self.errors.push(
-                Diagnostic::error("this `if` has no value when its condition is false").at(span, "an `else { … }` is missing"),
+                Diagnostic::error("this `if` has no value when its condition is false")
+                    .at(span, "an `else { … }` is missing"),
             );
         }
         Code::If { arms, otherwise }
@@ -601,7 +609,11 @@ impl Resolver {
         match word.run {
             Run::Constant(make) => Code::Const(make()),
             Run::Syntax => {
-                self.errors.push(Diagnostic::error(format!("`{}` must be called", word.name)).at(span, "").note(format!("as in `{}`", word.example.lines().next().unwrap_or(""))));
+                self.errors.push(
+                    Diagnostic::error(format!("`{}` must be called", word.name))
+                        .at(span, "")
+                        .note(format!("as in `{}`", word.example.lines().next().unwrap_or(""))),
+                );
                 Code::Failed
             }
             _ if word.kind == word::Kind::Setting && word.name != "grid" => {
@@ -726,7 +738,9 @@ impl Resolver {
                     good = false;
                 }
                 Some(name) if out.iter().any(|o| o.name.as_ref() == Some(name)) => {
-                    self.errors.push(Diagnostic::error(format!("`{name}` is given twice")).at(arg.name_span, "the second time"));
+                    self.errors.push(
+                        Diagnostic::error(format!("`{name}` is given twice")).at(arg.name_span, "the second time"),
+                    );
                     good = false;
                 }
                 Some(_) => {}
@@ -742,11 +756,15 @@ impl Resolver {
             return self.named_args(args, "record").map_or(Code::Failed, Code::Record);
         }
         if let Run::Constant(_) = word.run {
-            self.errors.push(Diagnostic::error(format!("`{0}` isn't a function: write `{0}` alone", word.name)).at(span, ""));
+            self.errors
+                .push(Diagnostic::error(format!("`{0}` isn't a function: write `{0}` alone", word.name)).at(span, ""));
             self.args_alone(args);
             return Code::Failed;
         }
-        if word.kind == word::Kind::Setting && word.name != "grid" && (mode != Mode::Scene || self.in_group || self.scopes.levels.len() > 1) {
+        if word.kind == word::Kind::Setting
+            && word.name != "grid"
+            && (mode != Mode::Scene || self.in_group || self.scopes.levels.len() > 1)
+        {
             self.errors.push(
                 Diagnostic::error(format!("`{}` belongs at the top level of the file", word.name))
                     .at(span, "")
@@ -770,7 +788,11 @@ impl Resolver {
                 rest: p.rest,
             })
             .collect();
-        let places = self.align(&Signature { name: word.name, noun: "property", params: &params, takes: word.takes() }, args, span)?;
+        let places = self.align(
+            &Signature { name: word.name, noun: "property", params: &params, takes: word.takes() },
+            args,
+            span,
+        )?;
         Some(places.into_iter().map(|(i, node)| (i as u16, node)).collect())
     }
 
@@ -784,7 +806,11 @@ impl Resolver {
             .map(|(name, required)| Slot { name, required: *required, positional: *required, rest: false })
             .collect();
         let names: Vec<&str> = slots.iter().map(|s| s.name).collect();
-        let takes = if names.is_empty() { format!("{name} takes nothing") } else { format!("{name} takes: {}", names.join(", ")) };
+        let takes = if names.is_empty() {
+            format!("{name} takes nothing")
+        } else {
+            format!("{name} takes: {}", names.join(", "))
+        };
         let signature = Signature { name: &name, noun: "parameter", params: &slots, takes };
         let Some(places) = self.align(&signature, args, span) else { return Code::Failed };
         let mut out: Vec<Option<Node>> = (0..count).map(|_| None).collect();
@@ -885,7 +911,9 @@ fn exports(statements: &[Statement], level: &Level) -> Exports {
     let mut out = Exports::default();
     for b in bindings {
         let exported = statements.iter().any(|s| match &s.kind {
-            StatementKind::Let { name, export, .. } | StatementKind::Fn { name, export, .. } => *export && name.span == b.span,
+            StatementKind::Let { name, export, .. } | StatementKind::Fn { name, export, .. } => {
+                *export && name.span == b.span
+            }
             // It may have been exported; another error about it would only confuse.
             StatementKind::Broken { name: Some(name) } => *name == b.name,
             _ => false,

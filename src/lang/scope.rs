@@ -111,7 +111,11 @@ impl Scopes {
             && own == name
         {
             let (kind, at) = (Kind::Function(*id), At::Local(0));
-            return Some((Access::Current, Binding { name: own.clone(), span: *span, kind, at, declared: true }, false));
+            return Some((
+                Access::Current,
+                Binding { name: own.clone(), span: *span, kind, at, declared: true },
+                false,
+            ));
         }
         let (access, binding, _) = self.find_at(name, level.checked_sub(1)?)?;
         let from = match access {
@@ -130,6 +134,9 @@ impl Scopes {
 
     /// Every name that can be seen, nearest first.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.levels.iter().rev().flat_map(|l| l.blocks.iter().rev().flat_map(|b| b.iter().rev().map(|x| x.name.as_str())))
+        self.levels
+            .iter()
+            .rev()
+            .flat_map(|l| l.blocks.iter().rev().flat_map(|b| b.iter().rev().map(|x| x.name.as_str())))
     }
 }

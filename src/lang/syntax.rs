@@ -6,8 +6,8 @@ use crate::diag::{Diagnostic, FileId, Span};
 use pest::error::{Error, ErrorVariant, InputLocation};
 
 const KEYWORDS: [&str; 18] = [
-    "let", "var", "fn", "param", "import", "export", "as", "for", "in", "while", "if", "else", "true", "false", "and", "or",
-    "not", "group",
+    "let", "var", "fn", "param", "import", "export", "as", "for", "in", "while", "if", "else", "true", "false", "and",
+    "or", "not", "group",
 ];
 
 /// Puts the parser's error about `piece`, which starts at byte `offset` of `file`, into words.
@@ -40,7 +40,15 @@ pub fn explain(error: &Error<Rule>, file: FileId, piece: &str, offset: usize) ->
 }
 
 /// Mistakes that have a name of their own.
-fn special(before: &str, found: &str, span: Span, piece: &str, at: usize, offset: usize, file: FileId) -> Option<Diagnostic> {
+fn special(
+    before: &str,
+    found: &str,
+    span: Span,
+    piece: &str,
+    at: usize,
+    offset: usize,
+    file: FileId,
+) -> Option<Diagnostic> {
     let last_word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("");
     let word_span = Span::new(file, offset + before.len() - last_word.len()..offset + before.len());
     if found.starts_with('&') && piece[at..].starts_with("&&") {
@@ -56,14 +64,19 @@ fn special(before: &str, found: &str, span: Span, piece: &str, at: usize, offset
     }
     if found == "=" && !matches!(last_word, "let" | "var" | "fn" | "") && before.contains('(') {
         return Some(
-            Diagnostic::error("a named argument is written with `:`").at(span, "write `:`").fix(":").note(format!("as in `{last_word}: 1`")),
+            Diagnostic::error("a named argument is written with `:`")
+                .at(span, "write `:`")
+                .fix(":")
+                .note(format!("as in `{last_word}: 1`")),
         );
     }
     if found.is_empty() && before.ends_with(['+', '-', '*', '/', '^', '=', '<', '>']) {
         return Some(Diagnostic::error("expected a value, but the statement ends here").at(span, ""));
     }
     // A misspelt or foreign keyword before a name: `lett a = 1`, `def f(x)`.
-    let starts = before == last_word && found.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
+    let starts = before == last_word
+        && !KEYWORDS.contains(&last_word)
+        && found.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
     if starts && !last_word.is_empty() {
         let meant = match last_word {
             "const" | "val" | "define" | "declare" => Some("let"),
@@ -93,7 +106,12 @@ fn token(rest: &str) -> &str {
         let end = rest.find(|c: char| !(c == '_' || c.is_alphanumeric())).unwrap_or(rest.len());
         return &rest[..end];
     }
-    &rest[..first.len_utf8()]
+    let end = if "=<>!&|+-*/.".contains(first) {
+        rest.find(|c: char| !"=<>&|".contains(c)).filter(|n| *n > 0).unwrap_or(first.len_utf8())
+    } else {
+        first.len_utf8()
+    };
+    &rest[..end]
 }
 
 fn shown(found: &str) -> String {
@@ -118,7 +136,7 @@ fn expectations(rules: &[Rule]) -> Vec<String> {
     .filter(|(r, _)| has(*r))
     .map(|(_, w)| w.to_owned())
     .collect();
-    let value = has(Rule::number) || has(Rule::paren) || has(Rule::name);
+    let value = [Rule::expr, Rule::true_, Rule::prefix, Rule::color, Rule::digits].into_iter().any(has);
     let mut out = Vec::new();
     if value {
         out.push("a value".to_owned());
@@ -131,7 +149,8 @@ fn expectations(rules: &[Rule]) -> Vec<String> {
         (Rule::ident, "a name"),
         (Rule::equals, "`=`"),
         (Rule::colon, "`:`"),
-        (Rule::arrow, "`=>`"),
+        (Rule::kw_let, "`let`"),
+        (Rule::kw_fn, "`fn`"),
         (Rule::kw_in, "`in`"),
         (Rule::kw_as, "`as`"),
         (Rule::params, "parameters in `( )`"),
@@ -144,7 +163,7 @@ fn expectations(rules: &[Rule]) -> Vec<String> {
     if has(Rule::open_brace) && !out.iter().any(|w| w.contains("{ }")) {
         out.push("a block in `{ }`".into());
     }
-    if out.is_empty() && has(Rule::operator) {
+    if out.is_empty() && (has(Rule::operator) || has(Rule::arrow)) {
         out.push("an operator or the end of the statement".into());
     }
     out

@@ -241,7 +241,9 @@ impl Value {
                 return Err(Fault::new("functions can't be compared"));
             }
             (Value::Number(_), Value::Angle(_)) | (Value::Angle(_), Value::Number(_)) => {
-                return Err(Fault::new("a number and an angle can't be compared").note("write the angle's unit: `30deg`"));
+                return Err(
+                    Fault::new("a number and an angle can't be compared").note("write the angle's unit: `30deg`")
+                );
             }
             _ => false,
         })

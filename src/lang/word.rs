@@ -10,7 +10,9 @@ use crate::scene::range;
 /// One word of the vocabulary.
 #[derive(Debug)]
 pub struct Word {
+    /// As it is written.
     pub name: &'static str,
+    /// Its chapter.
     pub kind: Kind,
     /// In the order in which they go by position.
     pub params: &'static [Param],
@@ -18,24 +20,37 @@ pub struct Word {
     pub doc: &'static str,
     /// A complete program.
     pub example: &'static str,
-    pub run: Run,
+    pub(super) run: Run,
 }
 
 /// What sort of word it is; the chapters of the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
+    /// Surfaces.
     Shape,
+    /// What collects.
     Group,
+    /// What moves and changes.
     Transform,
+    /// How surfaces look.
     Material,
+    /// What varies over a surface.
     Pattern,
+    /// Colours.
     Color,
+    /// Lights.
     Light,
+    /// Of the whole picture.
     Setting,
+    /// Numbers, angles, vectors.
     Maths,
+    /// Lists and records.
     List,
+    /// Texts.
     Text,
+    /// Keyed randomness.
     Random,
+    /// Fixed values.
     Constant,
 }
 
@@ -62,7 +77,7 @@ impl Kind {
 
 /// How a word does its work. `args` are one value a parameter, checked, then those of the rest parameter;
 /// a parameter that was left out and has no default is [`Value::Unset`].
-pub enum Run {
+pub(super) enum Run {
     /// A call.
     Call(fn(host: &mut dyn Host, args: &[Value]) -> Outcome),
     /// A number from a number: the fast way of the most used words.
@@ -80,7 +95,7 @@ impl std::fmt::Debug for Run {
 }
 
 /// What a running word may ask of the evaluator.
-pub trait Host {
+pub(super) trait Host {
     /// The scene so far.
     fn build(&mut self) -> &mut Build;
     /// The call and the calls around it.
@@ -94,9 +109,13 @@ pub trait Host {
 /// One parameter of a word.
 #[derive(Debug)]
 pub struct Param {
+    /// Its name.
     pub name: &'static str,
+    /// What it takes.
     pub ty: Ty,
+    /// What it is when it is left out.
     pub default: Default,
+    /// Allowed values.
     pub range: Option<Bounds>,
     /// May go by position.
     pub positional: bool,
@@ -113,10 +132,15 @@ pub enum Default {
     Required,
     /// Nothing; the word knows what to do.
     Absent,
+    /// A number.
     Number(f64),
+    /// An angle.
     Degrees(f64),
+    /// A vector.
     Vec3([f64; 3]),
+    /// A truth value.
     Bool(bool),
+    /// A text.
     Text(&'static str),
     /// An sRGB grey.
     Gray(f64),
@@ -125,22 +149,30 @@ pub enum Default {
 /// Allowed values of a number.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
+    /// The lower end.
     pub least: f64,
     /// Whether `least` itself is allowed.
     pub least_included: bool,
+    /// The upper end, perhaps infinite.
     pub most: f64,
+    /// Whether `most` itself is allowed.
     pub most_included: bool,
 }
 
 /// What a parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ty {
+    /// Any value.
     Any,
+    /// A number.
     Number,
+    /// A whole number.
     Whole,
     /// A number that geometry is made of.
     Length,
+    /// An angle.
     Angle,
+    /// Three lengths.
     Point,
     /// A point that isn't the origin.
     Direction,
@@ -152,9 +184,13 @@ pub enum Ty {
     Directions(usize),
     /// Two whole numbers.
     Pair,
+    /// A truth value.
     Bool,
+    /// A text.
     Text,
+    /// One of some texts.
     Choice(&'static [&'static str]),
+    /// A colour.
     Color,
     /// A number or a colour.
     Level,
@@ -164,14 +200,19 @@ pub enum Ty {
     ColorPaint,
     /// A number or a pattern of numbers.
     NumberPaint,
+    /// A material.
     Material,
     /// A shape, light or group.
     Node,
     /// What transforms take.
     Movable,
+    /// A pattern.
     Pattern,
+    /// A list or range.
     List,
+    /// A function.
     Function,
+    /// `off` or `grid(n)`.
     AntiAliasing,
 }
 
@@ -288,7 +329,7 @@ impl Word {
     }
 
     /// Checks arguments in place and fills in defaults.
-    pub fn check(&self, args: &mut [Value], build: &Build) -> Result<(), Box<Fault>> {
+    pub(super) fn check(&self, args: &mut [Value], build: &Build) -> Result<(), Box<Fault>> {
         for (i, arg) in args.iter_mut().enumerate() {
             let Some(param) = self.params.get(i).or(self.params.last()) else { continue };
             match arg {
@@ -303,7 +344,7 @@ impl Word {
 
 impl Param {
     /// Checks one value. Only faults cost anything.
-    pub fn check(&self, value: &Value, build: &Build) -> Result<(), Box<Fault>> {
+    pub(super) fn check(&self, value: &Value, build: &Build) -> Result<(), Box<Fault>> {
         if !self.ty.takes(value, build) {
             return Err(self.mistyped(value, build));
         }
@@ -352,7 +393,10 @@ impl Param {
                     if let Value::Vec3(v) = item {
                         v.iter().try_for_each(|x| size(*x))?;
                         if matches!(self.ty, Ty::Directions(_)) && *v == [0.0; 3] {
-                            return Err(Fault::new(format!("one of `{}` has no direction: it is [0, 0, 0]", self.name)));
+                            return Err(Fault::new(format!(
+                                "one of `{}` has no direction: it is [0, 0, 0]",
+                                self.name
+                            )));
                         }
                     }
                 }
@@ -389,7 +433,9 @@ impl Param {
             }
             (Ty::Color | Ty::ColorPaint, Value::Vec3(_)) => fault.label("write `rgb(…)` or `linear(…)`"),
             (Ty::Material, Value::Color(_) | Value::Pattern(_)) => fault.label("write `matte(…)` or `phong(color: …)`"),
-            (Ty::Point | Ty::Direction, Value::List(items)) if items.len() == 2 => fault.label("the third number is missing"),
+            (Ty::Point | Ty::Direction, Value::List(items)) if items.len() == 2 => {
+                fault.label("the third number is missing")
+            }
             (Ty::Text | Ty::Choice(_), Value::Number(_)) => fault.label("texts stand in quotes"),
             _ => fault,
         }
@@ -397,9 +443,11 @@ impl Param {
 }
 
 /// A value in a message: its kind, and itself where that is short and helps.
-pub fn described(value: &Value, build: &Build) -> String {
+pub(super) fn described(value: &Value, build: &Build) -> String {
     match value {
-        Value::Number(_) | Value::Angle(_) | Value::Bool(_) => format!("{} ({})", kind_of(value, build), value.show(40)),
+        Value::Number(_) | Value::Angle(_) | Value::Bool(_) => {
+            format!("{} ({})", kind_of(value, build), value.show(40))
+        }
         Value::Vec3(_) => format!("the list {}", value.show(40)),
         Value::List(l) => format!("a list of {}", l.len()),
         Value::Text(_) => format!("the text {}", value.show(40)),
@@ -408,7 +456,7 @@ pub fn described(value: &Value, build: &Build) -> String {
 }
 
 /// The kind of a value, as exactly as the scene knows it.
-pub fn kind_of(value: &Value, build: &Build) -> &'static str {
+pub(super) fn kind_of(value: &Value, build: &Build) -> &'static str {
     match value {
         Value::Bool(_) => "a truth value",
         Value::Node(id) => match build.node_word(*id) {
@@ -488,7 +536,7 @@ impl Ty {
 }
 
 /// Checked arguments, read by type. A wrong type can't come here; it reads as a harmless value all the same.
-pub trait Args {
+pub(super) trait Args {
     /// A number, or an angle in degrees.
     fn number(&self, i: usize) -> f64;
     /// Three numbers.

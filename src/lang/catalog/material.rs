@@ -11,13 +11,17 @@ use crate::scene::material::MaterialDefaults as D;
 /// The slots, for `phong` and for `.with`.
 pub const SLOTS: &[Param] = &[
     optional("color", Ty::ColorPaint, Default::Gray(0.8), "its own color"),
-    optional("ambient", Ty::Paint, Default::Number(D::AMBIENT), "how much of the scene's ambient light it gives back").at_least(0.0),
-    optional("diffuse", Ty::Paint, Default::Number(D::DIFFUSE), "how much of the lights' light it scatters").at_least(0.0),
+    optional("ambient", Ty::Paint, Default::Number(D::AMBIENT), "how much of the scene's ambient light it gives back")
+        .at_least(0.0),
+    optional("diffuse", Ty::Paint, Default::Number(D::DIFFUSE), "how much of the lights' light it scatters")
+        .at_least(0.0),
     optional("specular", Ty::Paint, Default::Number(D::SPECULAR), "how strong its highlights are").at_least(0.0),
     optional("shininess", Ty::NumberPaint, Default::Number(D::SHININESS), "how small its highlights are").at_least(0.0),
     optional("reflect", Ty::Paint, Default::Number(D::REFLECT), "how much it mirrors").at_least(0.0),
-    optional("transmit", Ty::Paint, Default::Number(D::TRANSMIT), "how much of what lies behind it shows through").at_least(0.0),
-    optional("ior", Ty::Number, Default::Absent, "how strongly it bends light: 1.33 for water, 1.5 for glass").within(1.0, 10.0),
+    optional("transmit", Ty::Paint, Default::Number(D::TRANSMIT), "how much of what lies behind it shows through")
+        .at_least(0.0),
+    optional("ior", Ty::Number, Default::Absent, "how strongly it bends light: 1.33 for water, 1.5 for glass")
+        .within(1.0, 10.0),
     optional("bump", Ty::NumberPaint, Default::Absent, "a height in scene units that roughens it"),
 ];
 

@@ -42,7 +42,11 @@ pub const WORDS: &[Word] = &[
         example: "let one = tan(45deg)",
         run: Run::Call(|_, a| {
             let t = fun::tan_deg(a.number(0));
-            if t.is_finite() { Ok(Value::Number(t)) } else { Err(Fault::new("the tangent of 90deg is infinite").into()) }
+            if t.is_finite() {
+                Ok(Value::Number(t))
+            } else {
+                Err(Fault::new("the tangent of 90deg is infinite").into())
+            }
         }),
     },
     Word {
@@ -138,7 +142,11 @@ pub const WORDS: &[Word] = &[
         example: "let z = cross([1, 0, 0], [0, 1, 0])",
         run: Run::Call(|_, a| {
             let v = a.vec3(0).cross(a.vec3(1));
-            if v.is_finite() { Ok(Value::Vec3(v.to_array())) } else { Err(Fault::new("the product is too large").into()) }
+            if v.is_finite() {
+                Ok(Value::Vec3(v.to_array()))
+            } else {
+                Err(Fault::new("the product is too large").into())
+            }
         }),
     },
     Word {

@@ -49,7 +49,12 @@ pub const WORDS: &[Word] = &[
                 Default::Text("spherical"),
                 "how it is laid on",
             ),
-            optional("filter", Ty::Choice(&["bilinear", "nearest"]), Default::Text("bilinear"), "how it is read between its dots"),
+            optional(
+                "filter",
+                Ty::Choice(&["bilinear", "nearest"]),
+                Default::Text("bilinear"),
+                "how it is read between its dots",
+            ),
             optional("axis", AXES, Default::Absent, "the direction of a planar mapping, \"z\" unless given"),
         ],
         doc: "A picture from a file.",

@@ -1,10 +1,10 @@
 //! Settings of the whole picture: at the top level of the main file, once each.
 
+use crate::diag::Span;
 use crate::lang::build::Build;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Run, Ty, Word, optional, required};
-use crate::diag::Span;
 use crate::scene::{AntiAliasing, Camera, Color, Precision, Projection, Settings, range};
 
 pub const WORDS: &[Word] = &[
@@ -16,8 +16,15 @@ pub const WORDS: &[Word] = &[
             optional("from", Ty::Point, Default::Vec3([0.0, 2.0, 8.0]), "where the eye is"),
             optional("at", Ty::Point, Default::Vec3([0.0; 3]), "what is in the middle of the picture"),
             optional("up", Ty::Direction, Default::Vec3([0.0, 1.0, 0.0]), "what points up in the picture"),
-            optional("fov", Ty::Angle, Default::Absent, "the vertical angle of view, 40deg unless given").between(0.0, 180.0),
-            optional("height", Ty::Length, Default::Absent, "instead of `fov`: parallel rays, and the height of what is seen").above(0.0),
+            optional("fov", Ty::Angle, Default::Absent, "the vertical angle of view, 40deg unless given")
+                .between(0.0, 180.0),
+            optional(
+                "height",
+                Ty::Length,
+                Default::Absent,
+                "instead of `fov`: parallel rays, and the height of what is seen",
+            )
+            .above(0.0),
         ],
         doc: "Where the picture is taken from; further, named cameras are alternatives.",
         example: "sphere()\ncamera(from: [4, 3, 8], at: [0, 0, 0], fov: 30deg)\ncamera(\"top\", from: [0, 9, 0], up: [0, 0, -1], height: 4)\nlight(at: [4, 8, 6])",
@@ -53,7 +60,12 @@ pub const WORDS: &[Word] = &[
         params: &[
             optional("size", Ty::Pair, Default::Absent, "width and height in pixels, [640, 480] unless given")
                 .within(1.0, range::LARGEST_SIDE as f64),
-            optional("aa", Ty::AntiAliasing, Default::Absent, "`off`: one ray a pixel; `grid(n)`: n × n rays, averaged"),
+            optional(
+                "aa",
+                Ty::AntiAliasing,
+                Default::Absent,
+                "`off`: one ray a pixel; `grid(n)`: n × n rays, averaged",
+            ),
             optional("depth", Ty::Whole, Default::Number(8.0), "how many mirrors and glasses a ray may go through")
                 .within(0.0, Settings::LARGEST_DEPTH as f64),
             optional("precision", Ty::Choice(&["f64", "f32"]), Default::Text("f64"), "the arithmetic: 64 or 32 bits"),
@@ -73,7 +85,9 @@ pub const WORDS: &[Word] = &[
     Word {
         name: "grid",
         kind: Kind::Setting,
-        params: &[required("n", Ty::Whole, "rays along one side of a pixel").within(1.0, AntiAliasing::LARGEST_GRID as f64)],
+        params: &[
+            required("n", Ty::Whole, "rays along one side of a pixel").within(1.0, AntiAliasing::LARGEST_GRID as f64)
+        ],
         doc: "Anti-aliasing by a regular grid of n × n rays a pixel, averaged.",
         example: "sphere()\nlight(at: [4, 8, 6])\nrender(aa: grid(3))",
         run: Run::Call(|_, a| Ok(Value::AntiAliasing(AntiAliasing::Grid(a.number(0) as u32)))),
@@ -88,7 +102,9 @@ fn once(host: &mut dyn Host, what: &str) -> Result<(), Box<Fault>> {
 
 fn note(build: &mut Build, what: &str, span: Span) -> Result<(), Box<Fault>> {
     if let Some((_, first)) = build.settings.iter().find(|(name, _)| name == what) {
-        return Err(Fault::new(format!("`{what}` is set twice")).label("the second time").and_at(*first, "the first time"));
+        return Err(Fault::new(format!("`{what}` is set twice"))
+            .label("the second time")
+            .and_at(*first, "the first time"));
     }
     build.settings.push((what.to_owned(), span));
     Ok(())
@@ -138,7 +154,9 @@ fn render(host: &mut dyn Host, a: &[Value]) -> Outcome {
         let (w, h) = (size.as_slice().number(0), size.as_slice().number(1));
         if w * h > range::MOST_PIXELS as f64 {
             let most = range::MOST_PIXELS;
-            return Err(Fault::new(format!("a picture has at most {most} pixels, this one has {}", w * h)).on(0).into());
+            return Err(Fault::new(format!("a picture has at most {most} pixels, this one has {}", w * h))
+                .on(0)
+                .into());
         }
         (settings.width, settings.height) = (w as u32, h as u32);
     }

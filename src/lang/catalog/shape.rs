@@ -6,7 +6,8 @@ use crate::lang::word::{Args, Default, Host, Kind, Param, Run, Ty, Word, optiona
 use crate::scene::{NodeKind, Shape, range};
 use glam::DVec3;
 
-const MAT: Param = optional("mat", Ty::Material, Default::Absent, "its material; without one, the group's, or a plain grey");
+const MAT: Param =
+    optional("mat", Ty::Material, Default::Absent, "its material; without one, the group's, or a plain grey");
 const NAME: Param = optional("name", Ty::Text, Default::Absent, "what messages and `explain` call it");
 const ORIGIN: Default = Default::Vec3([0.0; 3]);
 const UP: Default = Default::Vec3([0.0, 1.0, 0.0]);
@@ -107,7 +108,8 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Shape,
         params: &[
             optional("at", Ty::Point, ORIGIN, "its centre"),
-            optional("r", Ty::Length, Default::Number(1.0), "the radius of the circle in the middle of the tube").above(0.0),
+            optional("r", Ty::Length, Default::Number(1.0), "the radius of the circle in the middle of the tube")
+                .above(0.0),
             optional("tube", Ty::Length, Default::Number(0.25), "the radius of the tube, below `r`").above(0.0),
             optional("axis", Ty::Direction, UP, "the direction that it goes round"),
             MAT,
@@ -165,7 +167,9 @@ fn plane(host: &mut dyn Host, a: &[Value]) -> Outcome {
         ([], false, true) => (DVec3::ZERO, a.vec3(4)),
         ([], true, false) => return Err(Fault::new("a plane through a point needs a `normal` too").into()),
         ([], false, false) => {
-            return Err(Fault::new("a plane needs a place").note("write `plane(y: 0)`, or `through:` and `normal:`").into());
+            return Err(Fault::new("a plane needs a place")
+                .note("write `plane(y: 0)`, or `through:` and `normal:`")
+                .into());
         }
         _ => {
             return Err(Fault::new("a plane takes only one of `x`, `y` and `z`, or `through` and `normal`")
