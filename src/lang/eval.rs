@@ -33,7 +33,7 @@ impl<'p> Machine<'p> {
                 let b = self.eval(&ab.1, frame)?;
                 self.binary(*op, &a, &b, span)
             }
-            Code::List(items) => self.list(items, frame),
+            Code::List(items) => self.list(items, span, frame),
             Code::Block(nodes) => {
                 let mut value = Value::None;
                 for n in nodes {
@@ -87,7 +87,10 @@ impl<'p> Machine<'p> {
                 self.field(&value, name, span)
             }
             Code::Closure(function, captures) => {
-                let captures = captures.iter().map(|c| self.capture(*c, frame)).collect();
+                let captures: Box<[Value]> = captures.iter().map(|c| self.capture(*c, frame)).collect();
+                for v in &captures {
+                    self.hold(v, span)?;
+                }
                 Ok(Value::Function(Arc::new(Closure { function: *function, captures })))
             }
             Code::Discard(value) => self.discard(value, frame),
@@ -106,6 +109,7 @@ impl<'p> Machine<'p> {
                 let mut record = super::value::Record::default();
                 for a in args {
                     let value = self.eval(&a.value, frame)?;
+                    self.hold(&value, span)?;
                     record.insert(a.name.clone().unwrap_or_default(), value);
                 }
                 Ok(Value::Record(Arc::new(record)))
@@ -177,17 +181,22 @@ impl<'p> Machine<'p> {
         }
     }
 
-    fn list(&mut self, items: &'p [Node], frame: Frame<'_>) -> Outcome {
+    fn list(&mut self, items: &'p [Node], span: Span, frame: Frame<'_>) -> Outcome {
         if let [x, y, z] = items {
             let (x, y, z) = (self.eval(x, frame)?, self.eval(y, frame)?, self.eval(z, frame)?);
             if let (Value::Number(x), Value::Number(y), Value::Number(z)) = (&x, &y, &z) {
                 return Ok(Value::Vec3([*x, *y, *z]));
             }
+            for v in [&x, &y, &z] {
+                self.hold(v, span)?;
+            }
             return Ok(Value::List(EcoVec::from([x, y, z])));
         }
         let mut out = EcoVec::with_capacity(items.len());
         for n in items {
-            out.push(self.eval(n, frame)?);
+            let v = self.eval(n, frame)?;
+            self.hold(&v, span)?;
+            out.push(v);
         }
         Ok(Value::List(out))
     }
@@ -202,6 +211,7 @@ impl<'p> Machine<'p> {
 
     fn push(&mut self, value: Value, span: Span) -> Outcome {
         self.step(span)?;
+        self.hold(&value, span)?;
         let most = self.limits.list_length;
         let Some(list) = self.lists.last_mut() else { return Ok(Value::None) };
         if list.len() >= most {
@@ -390,6 +400,7 @@ impl<'p> Machine<'p> {
                             .note(format!("it has: {}", keys.join(", ")));
                         return Err(self.fail(fault, a.name_span));
                     }
+                    self.hold(&value, span)?;
                     Arc::make_mut(&mut record).insert(name, value);
                 }
                 Ok(Value::Record(record))

@@ -15,6 +15,8 @@ pub struct Limits {
     pub nesting: usize,
     /// Values in one list.
     pub list_length: usize,
+    /// Lists, records and functions that hold others: what keeps the stack from overflowing when a chain of them is let go.
+    pub containers: usize,
     /// Bytes of one text.
     pub text_length: usize,
     /// Bytes of all texts that are made.
@@ -49,6 +51,7 @@ impl Default for Limits {
             call_depth: 5_000,
             nesting: 50_000,
             list_length: 10_000_000,
+            containers: 1_000_000,
             text_length: 1_000_000,
             text_total: 256 << 20,
             objects: 10_000_000,

@@ -31,6 +31,8 @@ pub struct Machine<'p> {
     pub lists: Vec<EcoVec<Value>>,
     pub steps: u64,
     pub text_bytes: usize,
+    /// Lists, records and functions made so far that hold others.
+    pub containers: usize,
     /// The call of a built-in word that is running.
     pub here: Span,
     /// Values from the command line by parameter name.
@@ -217,6 +219,21 @@ impl<'p> Machine<'p> {
             format!("the scene takes more than {} steps to make", self.limits.steps),
             "a step is a call or a turn of a loop; usually a loop doesn't end, or runs too often",
         )
+    }
+
+    /// Counts a value that holds others, where `inner` is one that does so itself.
+    #[inline]
+    pub fn hold(&mut self, inner: &Value, span: Span) -> Result<(), Stop> {
+        if !matches!(inner, Value::List(_) | Value::Record(_) | Value::Function(_)) {
+            return Ok(());
+        }
+        self.containers += 1;
+        let most = self.limits.containers;
+        if self.containers <= most {
+            return Ok(());
+        }
+        let message = format!("the scene puts more than {most} lists, records and functions into others");
+        Err(self.fail(Fault::budget(message, "usually a loop that wraps a value in itself"), span))
     }
 
     /// The value of a slot that may be without one.

@@ -115,6 +115,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
         lists: Vec::new(),
         steps: 0,
         text_bytes: 0,
+        containers: 0,
         here: Span::new(main, 0..0),
         set,
         params: Vec::new(),

@@ -329,6 +329,11 @@ fn runaway_programs_end_in_an_error() {
         assert_eq!(f.diagnostics[0].message, expected, "{text}");
         assert!(!f.diagnostics[0].labels.is_empty());
     }
+    for wrap in ["[x]", "[0, x, 0]", "record(a: x)", "() => x", "[for i in 0..1 { x }]", "0..1 |> map(i => y)"] {
+        let text = format!("fn f() {{ var x = []; while true {{ let y = x; x = {wrap} }}; x }}\nlet a = f()");
+        let found = errors(&text.replace("() => x", "() => y"));
+        assert_eq!(found, ["the scene puts more than 1000000 lists, records and functions into others"], "{wrap}");
+    }
     assert_eq!(errors(&"(".repeat(100_000)), ["brackets are nested more than 256 deep"]);
     assert_eq!(errors(""), ["the scene is empty"]);
     assert_eq!(errors("// nothing\n"), ["the scene is empty"]);
