@@ -1,11 +1,206 @@
 //! From text to scene: grammar, evaluation, vocabulary, and the messages when something is wrong.
+//!
+//! The way of a text: `load` reads files and has them `parse`d, statement by statement, into the `ast`; `resolve` turns
+//! names into slots and makes the `code` that `eval` runs; [`catalog`] is the vocabulary; `build` holds the scene
+//! meanwhile; `finish` takes the last look. Mistakes of all phases come out together, in the order of the text.
 
+mod ast;
+mod build;
+mod call;
+pub mod catalog;
+mod code;
+mod eval;
+mod fault;
+mod finish;
+mod limits;
+mod load;
+mod machine;
+mod ops;
+mod param;
+mod parse;
+mod picture;
 pub mod request;
+mod resolve;
+mod scan;
+mod scope;
+mod suggest;
+mod syntax;
+#[cfg(test)]
+mod tests;
+mod value;
+pub mod word;
 
 pub use request::{Evaluated, Failure, Input, Param, ParamKind, Request};
 
+use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
+use ast::StatementKind;
+use build::Build;
+use code::Node;
+use limits::{Limits, STACK_BYTES};
+use load::Loader;
+use machine::{Machine, SetValue};
+use resolve::Resolver;
+use std::collections::HashMap;
+use std::time::Instant;
+use value::Value;
+
 /// Reads, evaluates and checks a scene. Every independent mistake is reported; nothing is written and nothing is printed.
 pub fn evaluate(request: &Request) -> Result<Evaluated, Failure> {
-    let _ = request;
-    todo!("replaced by the language")
+    evaluate_within(request, Limits::default())
+}
+
+/// Evaluates on a thread of its own, whose stack fits the limits on nesting.
+fn evaluate_within(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, || run(request, limits));
+        match thread.map(|t| t.join()) {
+            Ok(Ok(result)) => result,
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            Err(e) => Err(Failure {
+                diagnostics: vec![Diagnostic::error(format!("can't start evaluating: {}", load::reason(&e)))],
+                sources: Sources::new(),
+                files: Vec::new(),
+                main_unreadable: true,
+            }),
+        }
+    })
+}
+
+fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
+    let start = Instant::now();
+    let (mut loader, read) = Loader::load(request, limits);
+    if let Err(d) = read {
+        return Err(Failure {
+            diagnostics: vec![d],
+            sources: loader.sources,
+            files: loader.files,
+            main_unreadable: true,
+        });
+    }
+    let mut errors = std::mem::take(&mut loader.errors);
+    let main = loader.modules.last().map_or(FileId(0), |m| m.file);
+    if errors.is_empty() && loader.modules.last().is_some_and(|m| m.statements.is_empty()) {
+        let d = Diagnostic::error("the scene is empty").at(Span::new(main, 0..0), "");
+        errors.push(d.note("a scene needs something to show: `sphere()`"));
+    }
+
+    let mut resolver = Resolver::default();
+    let last = loader.modules.len().saturating_sub(1);
+    for (i, m) in loader.modules.iter().enumerate() {
+        resolver.file(&m.statements, &m.imports, i == last);
+    }
+    let nodes = set_nodes(request, &mut loader.sources, &mut resolver);
+    errors.append(&mut resolver.errors);
+    errors.extend(unknown_params(&loader, &nodes));
+    let parse_seconds = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let program = resolver.program;
+    let set = nodes
+        .iter()
+        .map(|(name, raw, span, node)| {
+            let node = node.as_ref().map_err(Diagnostic::clone);
+            (name.clone(), SetValue { raw: raw.clone(), span: *span, node })
+        })
+        .collect::<HashMap<_, _>>();
+    let mut machine = Machine {
+        program: &program,
+        build: Build::new(limits),
+        limits,
+        globals: vec![Value::Unset; program.globals as usize],
+        stack: Vec::new(),
+        calls: Vec::new(),
+        nesting: 0,
+        collected: Vec::new(),
+        lists: Vec::new(),
+        steps: 0,
+        text_bytes: 0,
+        containers: 0,
+        here: Span::new(main, 0..0),
+        set,
+        params: Vec::new(),
+        record_arguments: request.record_arguments,
+        errors: Vec::new(),
+        sources: &loader.sources,
+    };
+    for (i, m) in program.modules.iter().enumerate() {
+        if !machine.run(m, i == last) {
+            break;
+        }
+    }
+    let Machine { mut build, params, errors: failed, .. } = machine;
+    errors.extend(failed);
+    if errors.is_empty() {
+        errors = finish::finish(&mut build, &mut loader);
+    }
+    let Loader { sources, files, .. } = loader;
+    if !errors.is_empty() {
+        return Err(Failure { diagnostics: in_order(errors, limits.errors), sources, files, main_unreadable: false });
+    }
+    let mut warnings = Vec::new();
+    if build.scene.instance_count() == 0 {
+        let d = Diagnostic::warning("there is nothing to show").at(Span::new(main, 0..0), "");
+        warnings.push(d.note("the scene has no shapes: add one, such as `sphere()`"));
+    }
+    let evaluate_seconds = start.elapsed().as_secs_f64();
+    Ok(Evaluated { scene: build.scene, sources, params, warnings, files, parse_seconds, evaluate_seconds })
+}
+
+type SetNode = (String, String, Span, Result<Node, Diagnostic>);
+
+/// The values of `--set` as expressions, each in a text of its own.
+fn set_nodes(request: &Request, sources: &mut Sources, resolver: &mut Resolver) -> Vec<SetNode> {
+    let mut out: Vec<SetNode> = Vec::new();
+    for (name, raw) in &request.set {
+        let file = sources.add(Source { name: format!("--set {name}={raw}"), path: None, text: raw.clone() });
+        let span = Span::new(file, 0..raw.len());
+        let before = resolver.errors.len();
+        let node = parse::parse_expression(file, raw).map(|e| resolver.lone_expression(&e));
+        // An unknown word is a mistake only where the parameter doesn't take any text.
+        let node = match resolver.errors.drain(before..).next() {
+            Some(d) => Err(d),
+            None => node,
+        };
+        out.retain(|(n, ..)| n != name); // the last one wins, as on every command line
+        out.push((name.clone(), raw.clone(), span, node));
+    }
+    out
+}
+
+fn unknown_params(loader: &Loader, nodes: &[SetNode]) -> Diagnostics {
+    let declared: Vec<&str> = loader
+        .modules
+        .last()
+        .into_iter()
+        .flat_map(|m| &m.statements)
+        .filter_map(|s| match &s.kind {
+            StatementKind::Param(p) => Some(p.name.name.as_str()),
+            StatementKind::Broken { name: Some(name) } => Some(name.as_str()),
+            _ => None,
+        })
+        .collect();
+    let unknown = nodes.iter().filter(|(name, ..)| !declared.contains(&name.as_str()));
+    unknown
+        .map(|(name, _, span, _)| {
+            let best = suggest::nearest(name, declared.iter().copied());
+            let d = Diagnostic::error(format!("the scene has no parameter `{name}`"))
+                .at(*span, suggest::did_you_mean(best));
+            match &declared[..] {
+                [] => d.note("it has no parameters"),
+                some => d.note(format!("its parameters: {}", some.join(", "))),
+            }
+        })
+        .collect()
+}
+
+/// In the order of the texts, without repetitions; at most `most`.
+fn in_order(mut errors: Diagnostics, most: usize) -> Diagnostics {
+    errors.sort_by_key(|d| d.span().map_or((FileId(0), 0), |s| (s.file, s.start)));
+    errors.dedup_by(|a, b| a.message == b.message && a.span() == b.span());
+    let more = errors.len().saturating_sub(most);
+    errors.truncate(most);
+    if more > 0 {
+        errors.push(Diagnostic::error(format!("and {more} further errors")));
+    }
+    errors
 }

@@ -1,0 +1,215 @@
+//! The scene while it is being made: arenas that only grow, and what the settings have said so far.
+
+use super::fault::Fault;
+use super::limits::Limits;
+use super::value::Value;
+use crate::diag::{FileId, Place, Span};
+use crate::scene::{
+    Color, ImageId, Material, MaterialId, Node, NodeId, NodeKind, Pattern, PatternId, PatternKind, Scene,
+};
+use ecow::EcoString;
+use std::collections::HashMap;
+
+/// A scene under construction.
+pub struct Build {
+    /// What there is so far.
+    pub scene: Scene,
+    /// What is known of each pattern, by its id.
+    traits: Vec<PatternTraits>,
+    constants: HashMap<([u64; 3], bool), PatternId>,
+    /// Picture files that patterns name, by image id; opened at the end, and only those that are shown.
+    pub pictures: Vec<PictureFile>,
+    /// Where each setting was made, to refuse a second one.
+    pub settings: Vec<(String, Span)>,
+    /// Whether the scene's own default camera has been replaced.
+    pub has_camera: bool,
+    /// Budgets.
+    pub limits: Limits,
+}
+
+#[derive(Clone, Copy)]
+struct PatternTraits {
+    /// Of numbers, not colours.
+    number: bool,
+    /// Patterns within it, itself included.
+    depth: u32,
+}
+
+/// A picture file as a scene names it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PictureFile {
+    /// As written.
+    pub path: EcoString,
+    /// The text that names it; paths start at its folder.
+    pub file: FileId,
+    /// The `image(…)` expression.
+    pub span: Span,
+}
+
+impl Build {
+    /// An empty scene.
+    pub fn new(limits: Limits) -> Build {
+        let scene = Scene::empty();
+        let default = scene.materials[0].clone();
+        let traits = (0..scene.patterns.len() as u32)
+            .map(|i| PatternTraits { number: PatternId(i) != default.color, depth: 1 })
+            .collect();
+        Build {
+            scene,
+            traits,
+            constants: HashMap::new(),
+            pictures: Vec::new(),
+            settings: Vec::new(),
+            has_camera: false,
+            limits,
+        }
+    }
+
+    /// Stores a node.
+    pub fn node(
+        &mut self,
+        kind: NodeKind,
+        material: Option<MaterialId>,
+        name: Option<String>,
+        place: Place,
+    ) -> Result<Value, Box<Fault>> {
+        self.check_count(self.scene.nodes.len(), "shapes, lights and groups")?;
+        self.scene.nodes.push(Node { kind, material, name, place });
+        Ok(Value::Node(NodeId(self.scene.nodes.len() as u32 - 1)))
+    }
+
+    /// Stores a material.
+    pub fn material(&mut self, material: Material) -> Result<Value, Box<Fault>> {
+        self.check_count(self.scene.materials.len(), "materials")?;
+        self.scene.materials.push(material);
+        Ok(Value::Material(MaterialId(self.scene.materials.len() as u32 - 1)))
+    }
+
+    /// Stores a pattern; it is one of numbers if all its children are.
+    pub fn pattern(&mut self, kind: PatternKind, span: Span) -> Result<Value, Box<Fault>> {
+        self.check_count(self.scene.patterns.len(), "patterns")?;
+        let mut traits = PatternTraits { number: !matches!(kind, PatternKind::Image { .. }), depth: 1 };
+        for child in kind.children() {
+            let child = self.traits[child.0 as usize];
+            traits.number &= child.number;
+            traits.depth = traits.depth.max(child.depth + 1);
+        }
+        let most = self.limits.pattern_depth;
+        if traits.depth > most {
+            return Err(Fault::new(format!("patterns are nested more than {most} deep"))
+                .note("usually a loop that wraps a pattern in itself"));
+        }
+        self.scene.patterns.push(Pattern { kind, span: Some(span) });
+        self.traits.push(traits);
+        Ok(Value::Pattern(PatternId(self.scene.patterns.len() as u32 - 1)))
+    }
+
+    /// The pattern that is the same colour everywhere; equal ones are stored once.
+    pub fn constant(&mut self, color: Color, number: bool) -> PatternId {
+        let key = (color.0.map(f64::to_bits), number);
+        if let Some(id) = self.constants.get(&key) {
+            return *id;
+        }
+        self.scene.patterns.push(Pattern::constant(color));
+        self.traits.push(PatternTraits { number, depth: 1 });
+        let id = PatternId(self.scene.patterns.len() as u32 - 1);
+        self.constants.insert(key, id);
+        id
+    }
+
+    /// A number, colour or pattern as a pattern.
+    pub fn paint(&mut self, value: &Value) -> Option<PatternId> {
+        match value {
+            Value::Number(n) => Some(self.constant(Color::linear_gray(*n), true)),
+            Value::Color(c) => Some(self.constant(*c, false)),
+            Value::Pattern(p) => Some(*p),
+            _ => None,
+        }
+    }
+
+    /// A pattern as a value: a constant one as the number or colour that it was made of.
+    pub fn unpaint(&self, id: PatternId) -> Value {
+        match self.scene.pattern(id).kind {
+            PatternKind::Constant(Color([n, ..])) if self.is_number(id) => Value::Number(n),
+            PatternKind::Constant(c) => Value::Color(c),
+            _ => Value::Pattern(id),
+        }
+    }
+
+    /// Whether a pattern is of numbers.
+    pub fn is_number(&self, id: PatternId) -> bool {
+        self.traits[id.0 as usize].number
+    }
+
+    /// What a node is, in a word.
+    pub fn node_word(&self, mut id: NodeId) -> &'static str {
+        loop {
+            match &self.scene.node(id).kind {
+                NodeKind::Shape(_) => return "shape",
+                NodeKind::Light(_) => return "light",
+                NodeKind::Group(_) => return "group",
+                NodeKind::Transformed { child, .. } => id = *child,
+            }
+        }
+    }
+
+    /// The image that stands for a picture file.
+    pub fn image(&mut self, file: PictureFile) -> ImageId {
+        let known = self.pictures.iter().position(|p| p.path == file.path && p.file == file.file);
+        let index = known.unwrap_or_else(|| {
+            self.pictures.push(file);
+            self.pictures.len() - 1
+        });
+        ImageId(index as u32)
+    }
+
+    /// The value of a material's slot, by name.
+    pub fn slot(&self, id: MaterialId, name: &str) -> Option<Value> {
+        let m = self.scene.material(id);
+        let pattern = match name {
+            "color" => m.color,
+            "ambient" => m.ambient,
+            "diffuse" => m.diffuse,
+            "specular" => m.specular,
+            "shininess" => m.shininess,
+            "reflect" => m.reflect,
+            "transmit" => m.transmit,
+            "ior" => return Some(m.ior.map_or(Value::None, Value::Number)),
+            "bump" => return Some(m.bump.map_or(Value::None, |p| self.unpaint(p))),
+            _ => return None,
+        };
+        Some(self.unpaint(pattern))
+    }
+
+    /// Sets a material's slot to a value that its type has been checked for.
+    pub fn set_slot(&mut self, m: &mut Material, name: &str, value: &Value) {
+        if name == "ior" {
+            m.ior = if let Value::Number(n) = value { Some(*n) } else { None };
+            return;
+        }
+        let paint = self.paint(value);
+        if name == "bump" {
+            m.bump = paint;
+            return;
+        }
+        let Some(paint) = paint else { return };
+        match name {
+            "color" => m.color = paint,
+            "ambient" => m.ambient = paint,
+            "diffuse" => m.diffuse = paint,
+            "specular" => m.specular = paint,
+            "shininess" => m.shininess = paint,
+            "reflect" => m.reflect = paint,
+            "transmit" => m.transmit = paint,
+            _ => {}
+        }
+    }
+
+    fn check_count(&self, count: usize, what: &str) -> Result<(), Box<Fault>> {
+        let most = self.limits.objects;
+        if count < most {
+            return Ok(());
+        }
+        Err(Fault::budget(format!("the scene makes more than {most} {what}"), "usually a loop that runs too often"))
+    }
+}

@@ -1,0 +1,206 @@
+//! Calls: of built-in words and of functions, with arguments bound by position or name.
+
+use super::catalog;
+use super::code::*;
+use super::fault::{Fault, Outcome, Stop};
+use super::machine::{Call, Frame, Machine, word_name};
+use super::suggest::{did_you_mean, nearest};
+use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
+use super::word::{Default, Run, described};
+use crate::diag::Span;
+use ecow::EcoString;
+use std::sync::Arc;
+
+/// Words with more parameters keep their arguments on the heap.
+const FEW: usize = 4;
+
+impl<'p> Machine<'p> {
+    /// A built-in word, its arguments placed already.
+    pub fn call_builtin(&mut self, id: BuiltinId, args: &'p [(u16, Node)], span: Span, frame: Frame<'_>) -> Outcome {
+        let word = catalog::word(id);
+        let most = args.last().map_or(0, |(i, _)| usize::from(*i) + 1);
+        let count = args.iter().map(|(i, _)| usize::from(*i) + 1).max().unwrap_or(most).max(word.params.len());
+        if count <= FEW {
+            let mut values = [const { Value::Unset }; FEW];
+            for (i, node) in args {
+                values[usize::from(*i)] = self.eval(node, frame)?;
+            }
+            self.run_word(id, &mut values[..count], span, args)
+        } else {
+            let mut values = vec![Value::Unset; count];
+            for (i, node) in args {
+                values[usize::from(*i)] = self.eval(node, frame)?;
+            }
+            self.run_word(id, &mut values, span, args)
+        }
+    }
+
+    /// Checks a word's arguments and runs it.
+    fn run_word(&mut self, id: BuiltinId, values: &mut [Value], span: Span, args: &[(u16, Node)]) -> Outcome {
+        let word = catalog::word(id);
+        if let (Run::Number(f), [Value::Number(x)]) = (&word.run, &*values) {
+            let y = f(*x);
+            if y.is_finite() {
+                return Ok(Value::Number(y));
+            }
+            return Err(self.locate(
+                Fault::new(format!("`{}` of {} isn't a number", word.name, number_text(*x))).on(0),
+                span,
+                args,
+            ));
+        }
+        word.check(values, &self.build).map_err(|f| self.locate(f.note_once(word.takes()), span, args))?;
+        self.here = span;
+        let result = match &word.run {
+            Run::Call(run) => run(self, values),
+            Run::Number(_) | Run::Constant(_) | Run::Syntax => Ok(Value::None),
+        };
+        result.map_err(|stop| match stop {
+            Stop::Fault(f) => self.locate(f, span, args),
+            other => other,
+        })
+    }
+
+    /// A function known beforehand.
+    pub fn call_known(
+        &mut self,
+        function: FunctionId,
+        callee: Option<&'p Node>,
+        args: &'p [Option<Node>],
+        span: Span,
+        frame: Frame<'_>,
+    ) -> Outcome {
+        let closure = match callee {
+            None => None,
+            Some(node) => match self.eval(node, frame)? {
+                Value::Function(c) => Some(c),
+                _ => return Err(Stop::Reported),
+            },
+        };
+        let base = self.stack.len();
+        for arg in args {
+            let value = match arg {
+                Some(node) => self.eval(node, frame)?,
+                None => Value::Unset,
+            };
+            self.stack.push(value);
+        }
+        self.enter(function, closure.as_ref(), base, span)
+    }
+
+    /// Runs a function whose arguments are on the stack from `base`.
+    fn enter(&mut self, function: FunctionId, closure: Option<&Arc<Closure>>, base: usize, span: Span) -> Outcome {
+        let program = self.program;
+        let Some(f) = program.functions.get(function.0 as usize) else { return Err(Stop::Reported) };
+        self.step(span)?;
+        self.nesting += f.depth as usize;
+        self.calls.push(Call { function, base, span, frame: None });
+        if self.calls.len() > self.limits.call_depth || self.nesting > self.limits.nesting {
+            let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len() - 1))
+                .label(format!("`{}` calls itself without an end?", f.name))
+                .note("a function that calls itself needs a case in which it doesn't");
+            return Err(self.fail(fault, span));
+        }
+        self.stack.resize(base + f.slots as usize, Value::Unset);
+        let frame = Frame { base, closure };
+        for (i, p) in f.params.iter().enumerate() {
+            if let (Some(default), Value::Unset) = (&p.default, &self.stack[base + i]) {
+                self.stack[base + i] = self.eval(default, frame)?;
+            }
+        }
+        let value = self.eval(&f.body, frame)?;
+        self.stack.truncate(base);
+        self.calls.pop();
+        self.nesting -= f.depth as usize;
+        Ok(value)
+    }
+
+    /// A call of a value.
+    pub fn call_unknown(&mut self, callee: &'p Node, args: &'p [ArgCode], span: Span, frame: Frame<'_>) -> Outcome {
+        let function = self.eval(callee, frame)?;
+        if !matches!(function, Value::Function(_) | Value::Builtin(_)) {
+            let got = described(&function, &self.build);
+            let fault = Fault::new(format!("only functions can be called, this is {got}"));
+            return Err(self.fail(fault, callee.span));
+        }
+        let mut values = Vec::with_capacity(args.len());
+        for a in args {
+            values.push((a.name.clone(), self.eval(&a.value, frame)?));
+        }
+        self.call_value(&function, values, span, args)
+    }
+
+    /// A call of a value with values; `args` are their texts, where there are any.
+    pub fn call_value(
+        &mut self,
+        function: &Value,
+        values: Vec<(Option<EcoString>, Value)>,
+        span: Span,
+        args: &'p [ArgCode],
+    ) -> Outcome {
+        let program = self.program;
+        let (params, rest): (Vec<(&str, bool, bool)>, bool) = match function {
+            Value::Builtin(id) => {
+                let word = catalog::word(*id);
+                let params =
+                    word.params.iter().map(|p| (p.name, p.default == Default::Required, p.positional)).collect();
+                (params, word.params.last().is_some_and(|p| p.rest))
+            }
+            Value::Function(c) => {
+                let Some(f) = program.functions.get(c.function.0 as usize) else { return Err(Stop::Reported) };
+                (f.params.iter().map(|p| (p.name.as_str(), p.required, p.required)).collect(), false)
+            }
+            _ => return Err(self.fail(Fault::new("only functions can be called"), span)),
+        };
+        let name = word_name(function, program);
+        let mut placed = vec![Value::Unset; params.len()];
+        let mut next = 0;
+        for (k, (arg, value)) in values.into_iter().enumerate() {
+            let here = args.get(k).map_or(span, |a| a.name_span);
+            let index = match &arg {
+                Some(arg) => params.iter().position(|(n, _, _)| *n == arg.as_str()),
+                None => {
+                    next += 1;
+                    let fits = params.get(next - 1).map_or(rest, |(_, _, positional)| *positional);
+                    fits.then_some(next - 1)
+                }
+            };
+            let Some(index) = index else {
+                let names: Vec<&str> = params.iter().map(|(n, _, _)| *n).collect();
+                let takes = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+                let fault = match &arg {
+                    Some(arg) => Fault::new(format!("`{name}` has no parameter `{arg}`"))
+                        .label(did_you_mean(nearest(arg, names.iter().copied()))),
+                    None => match params.get(next - 1) {
+                        Some((p, _, _)) => {
+                            Fault::new(format!("`{p}` of `{name}` must be named")).label(format!("write `{p}: …`"))
+                        }
+                        None => Fault::new(format!("`{name}` is given too many values")),
+                    },
+                };
+                return Err(self.fail(fault.note(format!("{name} takes: {takes}")), here));
+            };
+            if index >= placed.len() {
+                placed.resize(index + 1, Value::Unset);
+            }
+            if !matches!(placed[index], Value::Unset) {
+                return Err(self.fail(Fault::new(format!("`{}` of `{name}` is given twice", params[index].0)), here));
+            }
+            placed[index] = value;
+        }
+        if let Some((missing, _, _)) =
+            params.iter().zip(&placed).find(|((_, r, _), v)| *r && matches!(v, Value::Unset)).map(|(p, _)| p)
+        {
+            return Err(self.fail(Fault::new(format!("`{name}` needs `{missing}`")), span));
+        }
+        match function {
+            Value::Builtin(id) => self.run_word(*id, &mut placed, span, &[]),
+            Value::Function(c) => {
+                let base = self.stack.len();
+                self.stack.extend(placed);
+                self.enter(c.function, Some(c), base, span)
+            }
+            _ => Ok(Value::None),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Materials.
+
+use crate::lang::ast::Op;
+use crate::lang::fault::Outcome;
+use crate::lang::ops;
+use crate::lang::value::Value;
+use crate::lang::word::{Args, Default, Host, Kind, Param, Run, Ty, Word, optional, required};
+use crate::scene::Material;
+use crate::scene::material::MaterialDefaults as D;
+
+/// The slots, for `phong` and for `.with`.
+pub const SLOTS: &[Param] = &[
+    optional("color", Ty::ColorPaint, Default::Gray(0.8), "its own color"),
+    optional("ambient", Ty::Paint, Default::Number(D::AMBIENT), "how much of the scene's ambient light it gives back")
+        .at_least(0.0),
+    optional("diffuse", Ty::Paint, Default::Number(D::DIFFUSE), "how much of the lights' light it scatters")
+        .at_least(0.0),
+    optional("specular", Ty::Paint, Default::Number(D::SPECULAR), "how strong its highlights are").at_least(0.0),
+    optional("shininess", Ty::NumberPaint, Default::Number(D::SHININESS), "how small its highlights are").at_least(0.0),
+    optional("reflect", Ty::Paint, Default::Number(D::REFLECT), "how much it mirrors").at_least(0.0),
+    optional("transmit", Ty::Paint, Default::Number(D::TRANSMIT), "how much of what lies behind it shows through")
+        .at_least(0.0),
+    optional("ior", Ty::Number, Default::Absent, "how strongly it bends light: 1.33 for water, 1.5 for glass")
+        .within(1.0, 10.0),
+    optional("bump", Ty::NumberPaint, Default::Absent, "a height in scene units that roughens it"),
+];
+
+pub const WORDS: &[Word] = &[
+    Word {
+        name: "phong",
+        kind: Kind::Material,
+        params: SLOTS,
+        doc: "A material after Phong: matte color, highlights, mirror image and transparency.",
+        example: "sphere(mat: phong(color: #c33, specular: 0.5, shininess: 60, reflect: 0.1))\nlight(at: [4, 8, 6])",
+        run: Run::Call(phong),
+    },
+    Word {
+        name: "matte",
+        kind: Kind::Material,
+        params: &[required("color", Ty::ColorPaint, "its color")],
+        doc: "A material without highlights.",
+        example: "sphere(mat: matte(#c33))\nlight(at: [4, 8, 6])",
+        run: Run::Call(|host, a| with(host, &[("color", a[0].clone())])),
+    },
+    Word {
+        name: "mirror",
+        kind: Kind::Material,
+        params: &[
+            optional("tint", Ty::Paint, Default::Number(1.0), "the color of what it mirrors").at_least(0.0),
+            optional("reflect", Ty::Number, Default::Number(0.9), "how much of it").at_least(0.0),
+        ],
+        doc: "A mirror.",
+        example: "sphere(mat: mirror(tint: #fd8))\nplane(y: -1, mat: matte(checker(white, black)))\nlight(at: [4, 8, 6])",
+        run: Run::Call(|host, a| {
+            let span = host.place().span;
+            let reflect = ops::binary(Op::Multiply, &a[0], &a[1], host.build(), span)?;
+            polished(host, &[("reflect", reflect)])
+        }),
+    },
+    Word {
+        name: "glass",
+        kind: Kind::Material,
+        params: &[
+            optional("tint", Ty::Paint, Default::Number(1.0), "the color of what shows through").at_least(0.0),
+            optional("ior", Ty::Number, Default::Number(1.5), "how strongly it bends light").within(1.0, 10.0),
+        ],
+        doc: "Clear or colored glass, which bends light and mirrors at its edges.",
+        example: "sphere(mat: glass(tint: #8fc))\nplane(y: -1, mat: matte(checker(white, black)))\nlight(at: [4, 8, 6])",
+        run: Run::Call(|host, a| polished(host, &[("transmit", a[0].clone()), ("ior", a[1].clone())])),
+    },
+];
+
+fn phong(host: &mut dyn Host, a: &[Value]) -> Outcome {
+    let slots: Vec<(&str, Value)> =
+        SLOTS.iter().enumerate().filter(|(i, _)| a.given(*i)).map(|(i, p)| (p.name, a[i].clone())).collect();
+    with(host, &slots)
+}
+
+/// The default material with some slots set.
+fn with(host: &mut dyn Host, slots: &[(&str, Value)]) -> Outcome {
+    let place = host.place();
+    let build = host.build();
+    let mut m = Material { place: Some(place), ..build.scene.materials[0].clone() };
+    for (name, value) in slots {
+        build.set_slot(&mut m, name, value);
+    }
+    Ok(build.material(m)?)
+}
+
+/// A clear, smooth surface: it has no color of its own but a small highlight.
+fn polished(host: &mut dyn Host, slots: &[(&str, Value)]) -> Outcome {
+    let n = Value::Number;
+    let mut all = vec![("ambient", n(0.0)), ("diffuse", n(0.0)), ("specular", n(0.5)), ("shininess", n(200.0))];
+    all.extend_from_slice(slots);
+    with(host, &all)
+}

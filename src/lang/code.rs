@@ -1,0 +1,170 @@
+//! The program as it is run: names have become slots, arguments stand in the order of the parameters.
+
+use super::ast::Op;
+use super::value::{BuiltinId, FunctionId, Value};
+use crate::diag::Span;
+use ecow::EcoString;
+
+/// A piece of program and its text.
+#[derive(Debug)]
+pub struct Node {
+    pub code: Code,
+    pub span: Span,
+}
+
+#[derive(Debug)]
+pub enum Code {
+    Const(Value),
+    Local(u32),
+    Global(u32),
+    Capture(u32),
+    /// The function that is running.
+    Current,
+    /// A mistake here has been reported.
+    Failed,
+    List(Box<[Node]>),
+    /// A list of what `for`, `if` and plain items push.
+    Collected(Box<[Node]>),
+    Text(Box<[TextCode]>),
+    Negate(Box<Node>),
+    Not(Box<Node>),
+    Binary(Op, Box<(Node, Node)>),
+    And(Box<(Node, Node)>),
+    Or(Box<(Node, Node)>),
+    If {
+        arms: Box<[(Node, Node)]>,
+        otherwise: Option<Box<Node>>,
+    },
+    For(Box<ForCode>),
+    While(Box<(Node, Node)>),
+    /// The last one is the value.
+    Block(Box<[Node]>),
+    /// Computes something whose value must be nothing.
+    Discard(Box<Node>),
+    /// Adds a shape or light to the scene block around.
+    Emit(Box<Node>),
+    /// Adds a value to the list around.
+    Push(Box<Node>),
+    SetLocal(u32, Box<Node>),
+    SetGlobal(u32, Box<Node>),
+    /// Arguments with the places of their parameters; those of a rest parameter count on.
+    CallBuiltin {
+        word: BuiltinId,
+        args: Box<[(u16, Node)]>,
+    },
+    /// A function known beforehand: one argument a parameter. `callee` is its value, where it carries captures.
+    Call {
+        function: FunctionId,
+        callee: Option<Box<Node>>,
+        args: Box<[Option<Node>]>,
+    },
+    CallValue {
+        callee: Box<Node>,
+        args: Box<[ArgCode]>,
+    },
+    Record(Box<[ArgCode]>),
+    Group {
+        args: Box<[(u16, Node)]>,
+        body: Box<Node>,
+    },
+    Index(Box<(Node, Node)>),
+    Field(Box<Node>, EcoString),
+    With(Box<Node>, Box<[ArgCode]>),
+    Closure(FunctionId, Box<[CaptureFrom]>),
+    /// A module as a record: its exports' slots.
+    Module(Box<[(EcoString, u32)]>),
+    Param(Box<ParamCode>),
+}
+
+#[derive(Debug)]
+pub enum TextCode {
+    Literal(EcoString),
+    Node(Node),
+}
+
+#[derive(Debug)]
+pub struct ForCode {
+    pub slot: u32,
+    pub over: Node,
+    pub guard: Option<Node>,
+    pub body: Node,
+}
+
+/// An argument whose function isn't known beforehand.
+#[derive(Debug)]
+pub struct ArgCode {
+    pub name: Option<EcoString>,
+    /// Where the name stands, or the value.
+    pub name_span: Span,
+    pub value: Node,
+}
+
+/// Where a closure takes a value from when it is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CaptureFrom {
+    Local(u32),
+    Capture(u32),
+    Current,
+}
+
+#[derive(Debug)]
+pub struct ParamCode {
+    pub slot: u32,
+    pub name: EcoString,
+    pub name_span: Span,
+    pub default: Node,
+    pub range: Option<Node>,
+    pub choices: Option<Node>,
+    pub description: Option<EcoString>,
+    /// Whether it is the main file's, which `--set` can reach.
+    pub main: bool,
+}
+
+/// A function.
+#[derive(Debug)]
+pub struct FnCode {
+    /// `function` where it has none.
+    pub name: EcoString,
+    pub params: Vec<ParamSlot>,
+    /// Values that its frame holds.
+    pub slots: u32,
+    /// Expressions within each other.
+    pub depth: u32,
+    pub body: Node,
+}
+
+#[derive(Debug)]
+pub struct ParamSlot {
+    pub name: EcoString,
+    /// Must be given.
+    pub required: bool,
+    pub default: Option<Node>,
+}
+
+/// An outermost statement.
+#[derive(Debug)]
+pub struct TopStatement {
+    pub node: Node,
+    /// Globals that are unusable when it fails.
+    pub binds: Vec<u32>,
+    /// Adds to the scene or sets something: skipped in a module.
+    pub for_scene: bool,
+}
+
+/// A file.
+#[derive(Debug)]
+pub struct ModuleCode {
+    pub statements: Vec<TopStatement>,
+    pub slots: u32,
+    /// Functions of the top level and their slots: there before anything runs.
+    pub functions: Vec<(u32, FunctionId)>,
+}
+
+/// Everything that is run.
+#[derive(Debug, Default)]
+pub struct Program {
+    pub functions: Vec<FnCode>,
+    pub globals: u32,
+    /// In the order in which they run; the main file is the last.
+    pub modules: Vec<ModuleCode>,
+}

@@ -1,0 +1,208 @@
+//! Reads scene files and what they import. Only files beneath the project's folder, or beneath a folder that the user
+//! allowed, are read; links and `..` don't lead out of it.
+
+use super::ast::{Path as WrittenPath, Statement, StatementKind};
+use super::limits::Limits;
+use super::parse::parse;
+use super::request::{Input, Request};
+use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
+use std::collections::HashMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A parsed file.
+pub struct Module {
+    pub file: FileId,
+    pub statements: Vec<Statement>,
+    /// One an `import` statement: its module, or `None` where it couldn't be read.
+    pub imports: Vec<Option<usize>>,
+}
+
+/// Reads files and remembers them.
+pub struct Loader {
+    pub sources: Sources,
+    /// Every path that was read or looked for.
+    pub files: Vec<PathBuf>,
+    /// Imported ones before those that import them; the main file is the last.
+    pub modules: Vec<Module>,
+    pub errors: Diagnostics,
+    /// The folder that the main text's paths start from.
+    folder: PathBuf,
+    /// Folders that may be read, links resolved.
+    allowed: Vec<PathBuf>,
+    by_path: HashMap<PathBuf, Option<usize>>,
+    /// Files being imported, outermost first, with the names to show.
+    importing: Vec<(PathBuf, String)>,
+    limits: Limits,
+}
+
+impl Loader {
+    /// Reads the main file and all that it imports. An error where the main file can't be read.
+    pub fn load(request: &Request, limits: Limits) -> (Loader, Result<(), Diagnostic>) {
+        let mut loader = Loader {
+            sources: Sources::new(),
+            files: Vec::new(),
+            modules: Vec::new(),
+            errors: Vec::new(),
+            folder: PathBuf::new(),
+            allowed: request.allow_read.iter().filter_map(|p| p.canonicalize().ok()).collect(),
+            by_path: HashMap::new(),
+            importing: Vec::new(),
+            limits,
+        };
+        let read = loader.main(&request.main);
+        (loader, read)
+    }
+
+    fn main(&mut self, input: &Input) -> Result<(), Diagnostic> {
+        let (name, path, bytes) = match input {
+            Input::Text { name, bytes, folder } => {
+                self.folder = folder.clone();
+                self.allowed.extend(folder.canonicalize());
+                (name.clone(), None, bytes.clone())
+            }
+            Input::File(path) => {
+                self.files.push(path.clone());
+                let name = path.display().to_string();
+                let unreadable = |e: &io::Error| Diagnostic::error(format!("can't read `{name}`: {}", reason(e)));
+                let full = path.canonicalize().map_err(|e| unreadable(&e))?;
+                let bytes = read(&full, self.limits.file_bytes).map_err(|e| unreadable(&e))?;
+                self.folder = full.parent().unwrap_or(Path::new("/")).to_owned();
+                // The project is the current folder where the file is in it, else the file's own.
+                let here = std::env::current_dir().and_then(|d| d.canonicalize()).ok();
+                let root = here.filter(|d| full.starts_with(d)).unwrap_or_else(|| self.folder.clone());
+                self.allowed.push(root);
+                self.importing.push((full.clone(), name.clone()));
+                (name, Some(full), bytes)
+            }
+        };
+        let file = self.add(name, path, bytes);
+        self.module(file);
+        Ok(())
+    }
+
+    /// Adds a text; where it isn't UTF-8, an error and what can be shown of it.
+    fn add(&mut self, name: String, path: Option<PathBuf>, bytes: Vec<u8>) -> FileId {
+        match String::from_utf8(bytes) {
+            Ok(text) => self.sources.add(Source { name, path, text }),
+            Err(e) => {
+                let at = e.utf8_error().valid_up_to();
+                let byte = e.as_bytes().get(at).copied().unwrap_or(0);
+                // Everything from there on is left out: its positions would be wrong.
+                let good = e.as_bytes().get(..at).unwrap_or(&[]);
+                let text = format!("{}\u{FFFD}", String::from_utf8_lossy(good));
+                let file = self.sources.add(Source { name, path, text });
+                self.errors.push(
+                    Diagnostic::error("this file isn't UTF-8 text")
+                        .at(Span::new(file, at..at + 3), format!("the byte {byte:#04x} is no part of a letter"))
+                        .note("save it as UTF-8 in your editor"),
+                );
+                file
+            }
+        }
+    }
+
+    /// Parses a file, reads its imports, and adds it.
+    fn module(&mut self, file: FileId) -> usize {
+        let text = self.sources.get(file).text.clone();
+        let (statements, errors) =
+            if text.ends_with('\u{FFFD}') { (Vec::new(), Vec::new()) } else { parse(file, &text) };
+        self.errors.extend(errors);
+        let mut imports = Vec::new();
+        for s in &statements {
+            if let StatementKind::Import { path, .. } = &s.kind {
+                imports.push(self.import(file, path));
+            }
+        }
+        self.modules.push(Module { file, statements, imports });
+        self.modules.len() - 1
+    }
+
+    fn import(&mut self, from: FileId, path: &WrittenPath) -> Option<usize> {
+        let (full, name) = match self.find(from, &path.text, path.span) {
+            Ok(found) => found,
+            Err(d) => {
+                self.errors.push(d);
+                return None;
+            }
+        };
+        if let Some(start) = self.importing.iter().position(|(p, _)| *p == full) {
+            let mut circle: Vec<&str> = self.importing[start..].iter().map(|(_, n)| n.as_str()).collect();
+            circle.push(&name);
+            let note = format!("the circle: {}", circle.join(" → "));
+            self.errors.push(Diagnostic::error("files import each other in a circle").at(path.span, "").note(note));
+            return None;
+        }
+        if let Some(known) = self.by_path.get(&full) {
+            return *known;
+        }
+        if self.importing.len() >= self.limits.import_depth {
+            let most = self.limits.import_depth;
+            self.errors.push(Diagnostic::error(format!("imports are nested more than {most} deep")).at(path.span, ""));
+            return None;
+        }
+        let index = match read(&full, self.limits.file_bytes) {
+            Ok(bytes) => {
+                self.importing.push((full.clone(), name.clone()));
+                let file = self.add(name, Some(full.clone()), bytes);
+                let index = self.module(file);
+                self.importing.pop();
+                Some(index)
+            }
+            Err(e) => {
+                self.errors
+                    .push(Diagnostic::error(format!("can't read `{}`: {}", path.text, reason(&e))).at(path.span, ""));
+                None
+            }
+        };
+        self.by_path.insert(full, index);
+        index
+    }
+
+    /// The file that a text names by a path relative to its own folder, and how messages show it.
+    pub fn find(&mut self, from: FileId, written: &str, span: Span) -> Result<(PathBuf, String), Diagnostic> {
+        let source = self.sources.get(from);
+        let folder = source.path.as_deref().and_then(Path::parent).unwrap_or(&self.folder);
+        let path = folder.join(written);
+        let shown = Path::new(&source.name).parent().unwrap_or(Path::new("")).join(written).display().to_string();
+        if written.is_empty() {
+            return Err(Diagnostic::error("the name of the file is missing").at(span, ""));
+        }
+        self.files.push(path.clone());
+        let full = path.canonicalize().map_err(|e| {
+            let d = Diagnostic::error(format!("can't read `{written}`: {}", reason(&e))).at(span, "");
+            d.note("a path starts at the folder of the file that names it")
+        })?;
+        if !self.allowed.iter().any(|root| full.starts_with(root)) {
+            return Err(Diagnostic::error(format!("`{written}` is outside the project"))
+                .at(span, "")
+                .note("a scene may read only files beneath its project's folder; `--allow-read DIR` allows another"));
+        }
+        Ok((full, shown))
+    }
+}
+
+/// The bytes of an ordinary file of at most `most` bytes.
+pub fn read(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+    let meta = std::fs::metadata(path)?;
+    if meta.is_dir() {
+        return Err(io::Error::other("it is a folder"));
+    }
+    if !meta.is_file() {
+        return Err(io::Error::other("it isn't an ordinary file"));
+    }
+    if meta.len() > most as u64 {
+        return Err(io::Error::other(format!("it is larger than {} MB", most >> 20)));
+    }
+    std::fs::read(path)
+}
+
+/// Why, in words that are the same on every system.
+pub fn reason(e: &io::Error) -> String {
+    match e.kind() {
+        io::ErrorKind::NotFound => "there is no such file".into(),
+        io::ErrorKind::PermissionDenied => "permission denied".into(),
+        io::ErrorKind::InvalidInput => "its name can't be that of a file".into(),
+        _ => e.to_string(),
+    }
+}

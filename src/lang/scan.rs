@@ -1,0 +1,402 @@
+//! Prepares a text for the grammar: checks that brackets and quotes match and aren't nested too deeply, blanks comments,
+//! and turns every line's end into `;` where it ends a statement and into a blank where it doesn't. No byte moves, so the
+//! grammar's positions are the file's. Splitting the text at its outermost statements lets one mistake be reported for each.
+
+use super::limits::{ARROW_DEPTH, BRACKET_DEPTH};
+use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
+use std::ops::Range;
+
+/// A prepared text.
+#[derive(Debug, Default)]
+pub struct Prepared {
+    /// As long as the file.
+    pub text: String,
+    /// The outermost statements, blanks around them left out; empty ones are dropped.
+    pub statements: Vec<Piece>,
+}
+
+/// An outermost statement.
+#[derive(Debug)]
+pub struct Piece {
+    /// Its bytes.
+    pub range: Range<usize>,
+    /// A bracket or quote in it doesn't match: reported already, not to be parsed.
+    pub broken: bool,
+}
+
+/// Prepares `text`.
+pub fn prepare(file: FileId, text: &str) -> (Prepared, Diagnostics) {
+    let mut s = Scanner {
+        file,
+        bytes: text.as_bytes(),
+        out: text.as_bytes().to_vec(),
+        open: Vec::new(),
+        i: 0,
+        last: None,
+        start: 0,
+        broken: false,
+        arrows: 0,
+        pieces: Vec::new(),
+        errors: Vec::new(),
+    };
+    s.run();
+    let text = String::from_utf8(s.out).unwrap_or_default();
+    (Prepared { text, statements: s.pieces }, s.errors)
+}
+
+struct Open {
+    mark: u8,
+    at: usize,
+}
+
+struct Scanner<'a> {
+    file: FileId,
+    bytes: &'a [u8],
+    out: Vec<u8>,
+    open: Vec<Open>,
+    i: usize,
+    /// The last byte that belongs to a token.
+    last: Option<usize>,
+    start: usize,
+    broken: bool,
+    arrows: u32,
+    pieces: Vec<Piece>,
+    errors: Diagnostics,
+}
+
+const OPENING_WORDS: [&str; 7] = ["let", "var", "fn", "param", "import", "export", "while"];
+
+impl Scanner<'_> {
+    fn run(&mut self) {
+        if self.bytes.starts_with(b"\xEF\xBB\xBF") {
+            self.blank(0, 3); // a byte-order mark
+            self.i = 3;
+        }
+        while self.i < self.bytes.len() {
+            let inside_text = self.open.last().is_some_and(|o| o.mark == b'"');
+            let c = self.bytes[self.i];
+            if inside_text {
+                self.text_byte(c);
+            } else {
+                self.code_byte(c);
+            }
+            if self.open.len() > BRACKET_DEPTH || self.arrows > ARROW_DEPTH {
+                self.too_deep();
+                return;
+            }
+        }
+        self.close_at_end();
+        self.end_statement(self.bytes.len());
+    }
+
+    fn text_byte(&mut self, c: u8) {
+        match c {
+            b'\n' => return self.unclosed_text(),
+            b'\\' if self.bytes.get(self.i + 1).is_some_and(|n| *n != b'\n') => self.i += 1,
+            b'"' => {
+                self.open.pop();
+                self.last = Some(self.i);
+            }
+            b'{' => self.open.push(Open { mark: b'{', at: self.i }),
+            _ => {}
+        }
+        self.i += 1;
+    }
+
+    fn code_byte(&mut self, c: u8) {
+        let next = self.bytes.get(self.i + 1).copied();
+        match c {
+            b'/' if next == Some(b'/') => {
+                let end =
+                    self.bytes[self.i..].iter().position(|b| *b == b'\n').map_or(self.bytes.len(), |n| self.i + n);
+                self.blank(self.i, end);
+                self.i = end;
+                return;
+            }
+            b'/' if next == Some(b'*') => return self.block_comment(),
+            b'\n' => return self.line_end(),
+            b' ' | b'\t' | b'\r' => {
+                self.i += 1;
+                return;
+            }
+            b'"' | b'(' | b'[' | b'{' => self.open.push(Open { mark: c, at: self.i }),
+            b')' | b']' | b'}' => self.closing(c),
+            b';' => {
+                self.arrows = 0;
+                if self.open.is_empty() {
+                    self.end_statement(self.i);
+                    self.start = self.i + 1;
+                }
+            }
+            b',' => self.arrows = 0,
+            b'=' if next == Some(b'>') => self.arrows += 1,
+            _ => {}
+        }
+        self.last = Some(self.i);
+        self.i += 1;
+    }
+
+    fn closing(&mut self, c: u8) {
+        let wanted = self.open.last().map(|o| closer(o.mark));
+        if wanted == Some(c) {
+            self.open.pop();
+            return;
+        }
+        self.broken = true;
+        let here = self.span(self.i, self.i + 1);
+        let error = match self.open.last() {
+            None => {
+                Diagnostic::error(format!("`{}` closes nothing", c as char)).at(here, "no bracket is open here").fix("")
+            }
+            Some(open) => {
+                let (mark, wanted) = (open.mark as char, closer(open.mark) as char);
+                let error = Diagnostic::error(format!("`{mark}` is closed by `{}`", c as char))
+                    .at(here, format!("expected `{wanted}`"))
+                    .at(self.span(open.at, open.at + 1), "opened here");
+                // Close up to the bracket that this one fits, if there is one.
+                // Otherwise take it for a slip of the innermost.
+                let fits = self.open.iter().rposition(|o| closer(o.mark) == c);
+                self.open.truncate(fits.unwrap_or(self.open.len() - 1));
+                error
+            }
+        };
+        self.errors.push(error);
+    }
+
+    fn line_end(&mut self) {
+        if let Some(k) = self.open.iter().position(|o| o.mark == b'"') {
+            // A text's {…} runs over the line's end: so does the text.
+            self.open.truncate(k + 1);
+            return self.unclosed_text();
+        }
+        let word = self.next_word();
+        let opening = OPENING_WORDS.contains(&word);
+        let continues = word == "|>" || word == "else";
+        let top = self.open.last().map(|o| o.mark);
+        if opening && matches!(top, Some(b'(' | b'[')) {
+            // No expression goes on with such a word, so the bracket was forgotten.
+            self.unclosed_brackets();
+        }
+        let in_brackets = matches!(self.open.last(), Some(o) if o.mark != b'{');
+        let goes_on = continues || (self.ends_with_operator() && !opening);
+        if in_brackets || goes_on {
+            self.out[self.i] = b' ';
+        } else {
+            self.out[self.i] = b';';
+            self.arrows = 0;
+            if self.open.is_empty() {
+                self.end_statement(self.i);
+                self.start = self.i + 1;
+            }
+            self.last = None;
+        }
+        self.i += 1;
+    }
+
+    fn ends_with_operator(&self) -> bool {
+        let Some(last) = self.last else { return false };
+        if b"=+-*/^<>.&|".contains(&self.bytes[last]) {
+            return true;
+        }
+        let word_start = self.bytes[..=last]
+            .iter()
+            .rposition(|b| !(b.is_ascii_alphanumeric() || *b == b'_' || *b >= 0x80))
+            .map_or(0, |k| k + 1);
+        matches!(&self.bytes[word_start..=last], b"and" | b"or" | b"not" | b"in" | b"else")
+    }
+
+    /// The word, or `|>`, that the next line with any starts with.
+    fn next_word(&self) -> &str {
+        let mut i = self.i;
+        loop {
+            while self.bytes.get(i).is_some_and(|b| b.is_ascii_whitespace()) {
+                i += 1;
+            }
+            match self.bytes.get(i..i + 2) {
+                Some(b"//") => {
+                    while self.bytes.get(i).is_some_and(|b| *b != b'\n') {
+                        i += 1;
+                    }
+                }
+                Some(b"/*") => match comment_end(self.bytes, i) {
+                    Some(end) => i = end,
+                    None => return "",
+                },
+                Some(b"|>") => return "|>",
+                _ => break,
+            }
+        }
+        let end = self.bytes[i..]
+            .iter()
+            .position(|b| !(b.is_ascii_alphanumeric() || *b == b'_' || *b >= 0x80))
+            .map_or(self.bytes.len(), |n| i + n);
+        std::str::from_utf8(&self.bytes[i..end]).unwrap_or("")
+    }
+
+    fn block_comment(&mut self) {
+        let end = comment_end(self.bytes, self.i);
+        if end.is_none() {
+            let here = self.span(self.i, self.i + 2);
+            self.errors.push(
+                Diagnostic::error("this comment is never closed")
+                    .at(here, "opened here")
+                    .note("comments nest: every `/*` needs its own `*/`"),
+            );
+        }
+        let end = end.unwrap_or(self.bytes.len());
+        self.blank(self.i, end);
+        self.i = end;
+    }
+
+    fn unclosed_text(&mut self) {
+        if let Some(open) = self.open.pop() {
+            let here = self.span(open.at, self.i);
+            self.errors.push(
+                Diagnostic::error("this text is never closed")
+                    .at(here, "a `\"` is missing at its end")
+                    .note("a text ends on the line on which it starts; write `\\n` for a new line in it"),
+            );
+        }
+        self.broken = true;
+        // The rest of the statement can't be told from the text; start afresh with the line.
+        self.open.clear();
+        self.last = None;
+    }
+
+    fn unclosed_brackets(&mut self) {
+        let keep = self.open.iter().rposition(|o| o.mark == b'{').map_or(0, |k| k + 1);
+        if let Some(open) = self.open.last() {
+            self.errors.push(self.unclosed(open));
+        }
+        self.open.truncate(keep);
+        self.broken = true;
+    }
+
+    fn close_at_end(&mut self) {
+        if let Some(k) = self.open.iter().rposition(|o| o.mark == b'"') {
+            self.open.truncate(k + 1);
+            self.unclosed_text();
+        } else if let Some(open) = self.open.last() {
+            self.errors.push(self.unclosed(open));
+            self.broken = true;
+        }
+    }
+
+    fn unclosed(&self, open: &Open) -> Diagnostic {
+        Diagnostic::error(format!("this `{}` is never closed", open.mark as char)).at(
+            self.span(open.at, open.at + 1),
+            format!("expected a `{}` somewhere after it", closer(open.mark) as char),
+        )
+    }
+
+    fn too_deep(&mut self) {
+        let at = self.i.saturating_sub(1);
+        let error = if self.open.len() > BRACKET_DEPTH {
+            Diagnostic::error(format!("brackets are nested more than {BRACKET_DEPTH} deep"))
+        } else {
+            Diagnostic::error(format!("functions are nested more than {ARROW_DEPTH} deep"))
+        };
+        self.errors.push(
+            error.at(self.span(at, at + 1), "too deep here").note("give the inner part a name with `let` and use that"),
+        );
+        self.pieces.push(Piece { range: self.start..self.bytes.len(), broken: true });
+    }
+
+    fn end_statement(&mut self, end: usize) {
+        let blank = |b: &u8| b.is_ascii_whitespace();
+        let piece = &self.out[self.start..end];
+        if let Some(from) = piece.iter().position(|b| !blank(b)) {
+            let to = piece.iter().rposition(|b| !blank(b)).map_or(from, |k| k + 1);
+            self.pieces.push(Piece { range: self.start + from..self.start + to, broken: self.broken });
+        }
+        self.broken = false;
+    }
+
+    fn blank(&mut self, from: usize, to: usize) {
+        self.out[from..to].fill(b' ');
+    }
+
+    fn span(&self, from: usize, to: usize) -> Span {
+        Span::new(self.file, from..to.min(self.bytes.len()).max(from))
+    }
+}
+
+fn closer(open: u8) -> u8 {
+    match open {
+        b'(' => b')',
+        b'[' => b']',
+        b'{' => b'}',
+        other => other,
+    }
+}
+
+/// One past a nested comment that starts at `i`.
+fn comment_end(bytes: &[u8], mut i: usize) -> Option<usize> {
+    let mut depth = 0usize;
+    while i < bytes.len() {
+        match bytes.get(i..i + 2) {
+            Some(b"/*") => {
+                depth += 1;
+                i += 2;
+            }
+            Some(b"*/") => {
+                depth -= 1;
+                i += 2;
+                if depth == 0 {
+                    return Some(i);
+                }
+            }
+            _ => i += 1,
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cooked(text: &str) -> String {
+        let (p, errors) = prepare(FileId(0), text);
+        assert!(errors.is_empty(), "{errors:?}");
+        assert_eq!(p.text.len(), text.len());
+        p.text
+    }
+    fn errors(text: &str) -> Vec<String> {
+        prepare(FileId(0), text).1.into_iter().map(|d| d.message).collect()
+    }
+
+    #[test]
+    fn lines_end_statements_only_outside_brackets() {
+        assert_eq!(cooked("a\nb"), "a;b");
+        assert_eq!(cooked("f(a\n,b)\nc"), "f(a ,b);c");
+        assert_eq!(cooked("f({\na\n})"), "f({;a;})");
+        assert_eq!(cooked("a // x\n  |> b"), "a        |> b");
+    }
+
+    #[test]
+    fn statements_go_on_before_pipes_else_and_after_operators() {
+        assert_eq!(cooked("if a {}\n else {}"), "if a {}  else {}");
+        assert_eq!(cooked("let a =\n 1"), "let a =  1");
+        assert_eq!(cooked("a or\nb"), "a or b");
+        assert_eq!(cooked("50%\nb"), "50%;b");
+        assert_eq!(cooked("a /* x\n /* y */ */ b"), "a                  b");
+    }
+
+    #[test]
+    fn brackets_and_texts_must_close() {
+        assert_eq!(errors("f(1"), ["this `(` is never closed"]);
+        assert_eq!(errors("f(1]"), ["`(` is closed by `]`"]);
+        assert_eq!(errors("f 1)"), ["`)` closes nothing"]);
+        assert_eq!(errors("\"abc\nlet b = 1"), ["this text is never closed"]);
+        assert_eq!(errors("f(1\nlet b = 2"), ["this `(` is never closed"]);
+        assert_eq!(errors("/* /* */"), ["this comment is never closed"]);
+        assert_eq!(errors(&"(".repeat(100_000)), ["brackets are nested more than 256 deep"]);
+        assert_eq!(errors(&"a=>".repeat(100_000)), ["functions are nested more than 32 deep"]);
+    }
+
+    #[test]
+    fn texts_may_hold_brackets_and_expressions() {
+        assert_eq!(cooked("\"a ( // {f(\"x\")} \\\" \""), "\"a ( // {f(\"x\")} \\\" \"");
+    }
+}
