@@ -110,6 +110,8 @@ pub(super) trait Host {
     fn call(&mut self, function: &Value, args: &[Value]) -> Outcome;
     /// Uses up `n` of the budget of steps.
     fn spend(&mut self, n: u64) -> Result<(), Stop>;
+    /// Uses up the budget of values that hold others, if `inner`, about to be put into one, does so itself.
+    fn hold(&mut self, inner: &Value) -> Result<(), Stop>;
 }
 
 /// One parameter of a word.

@@ -144,10 +144,6 @@ fn finite(x: f64) -> Outcome {
 }
 
 fn lerp(host: &mut dyn Host, a: &[Value]) -> Outcome {
-    // Weights rather than a + u·(b − a), so that both ends are exact.
-    let (span, u) = (host.place().span, a.number(2));
-    let build = host.build();
-    let x = ops::binary(Op::Multiply, &Value::Number(1.0 - u), &a[0], build, span)?;
-    let y = ops::binary(Op::Multiply, &a[2], &a[1], build, span)?;
-    Ok(ops::binary(Op::Add, &x, &y, build, span)?)
+    let span = host.place().span;
+    Ok(ops::lerp(&a[0], &a[1], a.number(2), host.build(), span)?)
 }

@@ -14,6 +14,7 @@ mod maths;
 mod mixture;
 mod pattern;
 mod random;
+mod scatter;
 mod setting;
 mod shape;
 mod transform;
@@ -32,7 +33,7 @@ struct Catalog {
 fn tables() -> &'static Catalog {
     static CATALOG: OnceLock<Catalog> = OnceLock::new();
     CATALOG.get_or_init(|| {
-        let tables: [&'static [Word]; 15] = [
+        let tables: [&'static [Word]; 16] = [
             shape::WORDS,
             transform::WORDS,
             material::WORDS,
@@ -48,6 +49,7 @@ fn tables() -> &'static Catalog {
             vector::WORDS,
             list::WORDS,
             random::WORDS,
+            scatter::WORDS,
         ];
         let words: Vec<&'static Word> = tables.into_iter().flatten().collect();
         let ids = words.iter().enumerate().map(|(i, w)| (w.name, BuiltinId(i as u16))).collect();

@@ -1,9 +1,10 @@
 //! The tables are complete and consistent, and the words do what they say.
 
 use super::*;
+use crate::lang::limits::Limits;
 use crate::lang::word::{Default, Run};
-use crate::lang::{Input, Request, evaluate};
-use crate::scene::{PatternId, PatternKind};
+use crate::lang::{Input, Request, evaluate, evaluate_within};
+use crate::scene::{NodeKind, PatternId, PatternKind, Shape};
 
 fn request(text: &str) -> Request {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples").into();
@@ -94,8 +95,84 @@ fn words_compute() {
         ("blend([1, 2], by: 7)", "2"),
         ("blend([black, 1], by: 0.5)", "linear(0.5, 0.5, 0.5)"),
         ("blend([1], by: 0)", "`stops` must be a list of at least two numbers, colors or patterns, got a list of 1"),
+        // lists
+        ("[len([]), len(0..5), len(\"größe\"), len(record(a: 1))]", "[0, 5, 5, 1]"),
+        ("0..6 |> filter(x => x % 2 == 0) |> map(x => x * x)", "[0, 4, 16]"),
+        ("filter([1], x => x)", "the function must give true or false, got a number"),
+        ("fold(1..=5, 1, (a, b) => a * b)", "120"),
+        ("fold([3, 9, 2], 0, max)", "9"),
+        ("[sum([]), sum(1..=4), sum([0.5, 0.25])]", "[0, 10, 0.75]"),
+        ("sum([[1, 2, 3], [1, 1, 1]])", "[2, 3, 4]"),
+        ("steps(0deg, 90deg, 3)", "[0deg, 45deg, 90deg]"),
+        ("steps(1, 2, 1)", "`n` must be from 2 to 10000000, got 1"),
+        ("zip(0..2, [red, blue])[1][1] == blue", "true"),
+        ("zip([1], [1, 2])", "lists of 1 and of 2 have no pairs"),
+        ("enumerate([7, 8])", "[[0, 7], [1, 8]]"),
+        ("sort([3, -1, 2.5])", "[-1, 2.5, 3]"),
+        ("sort([[0, 2], [1, 1]], by: p => p[1])", "[[1, 1], [0, 2]]"),
+        ("sort([2, 30deg])", "`sort` can't order a number and an angle"),
+        ("sort([red])", "`sort` can't order a color"),
+        ("reverse(0..3)", "[2, 1, 0]"),
+        ("concat([1], 5..7, [])", "[1, 5, 6]"),
+        ("slice([1, 2, 3, 4], 2)", "[3, 4]"),
+        ("slice([1, 2], 1, 3)", "the list has 2 values, `to` is beyond them"),
+        ("slice([1, 2], 2, 1)", "`from` is after the end of the slice"),
+        ("[first(3..9), last(3..9)]", "[3, 8]"),
+        ("last([])", "the list is empty"),
+        ("[contains(0..3, 2), contains([red], blue), contains(\"marble\", \"arb\")]", "[true, false, true]"),
+        ("join([1, \"a\", true], by: \"-\")", "1-a-true"),
+        // random: pinned, for it belongs to the language's edition
+        ("rand(1) == rand(1) and rand(1) != rand(2)", "true"),
+        ("contains(0..3, pick(0..3, 7))", "true"),
+        ("pick([], 7)", "the list is empty"),
+        ("sort(shuffle(0..9, 1))", "[0, 1, 2, 3, 4, 5, 6, 7, 8]"),
+        ("shuffle(0..9, 1) == shuffle(0..9, 2)", "false"),
+        ("abs(length(on_sphere(4)) - 1) < 1e-12", "true"),
+        ("length(in_sphere(4)) < 1", "true"),
+        ("in_box([1, 2, 3], [1, 2, 3], 5)", "[1, 2, 3]"),
+        ("rand(sin)", "a function can't be a key of something random"),
+        ("noise_at([0, 0, 0], octaves: 1)", "0.5"),
+        ("scatter([1, 2, 3], [1, 2, 3], 1)", "[[1, 2, 3]]"),
+        ("scatter([0, 0, 0], [1e30, 0, 0], 1)", "`distance` is too small for this region"),
     ] {
         assert_eq!(value(expr), expected, "{expr}");
+    }
+}
+
+#[test]
+fn scattered_points_keep_their_distance_and_leave_no_gap() {
+    let e = evaluate(&request("for p in scatter([-5, 0, -4], [5, 0, 4], 0.5, key: 3) { sphere(at: p) }"));
+    let nodes = e.map(|e| e.scene.nodes).unwrap_or_default();
+    let points: Vec<glam::DVec3> = nodes
+        .iter()
+        .filter_map(|n| match n.kind {
+            NodeKind::Shape(Shape::Sphere { at, .. }) => Some(at),
+            _ => None,
+        })
+        .collect();
+    assert!(points.iter().all(|p| p.x.abs() <= 5.0 && p.y == 0.0 && p.z.abs() <= 4.0));
+    for (i, p) in points.iter().enumerate() {
+        assert!(points[..i].iter().all(|q| p.distance(*q) >= 0.5));
+        // One at twice the distance would have been found.
+        assert!(points.iter().any(|q| p != q && p.distance(*q) < 1.0));
+    }
+    // Random discs that leave room for no other cover 55 % of a plane (Rényi): 223 here, and some more at the border.
+    assert!((180..260).contains(&points.len()), "{}", points.len());
+}
+
+#[test]
+fn values_made_by_words_use_up_the_budgets_too() {
+    let deep = "fn f() { var x = [1]; while true { x = enumerate(x) }; x }\nlet a = f()";
+    assert_eq!(error(deep), "the scene puts more than 1000000 lists, records and functions into others");
+    let small = Limits { steps: 10_000, list_length: 1_000, ..Limits::default() };
+    for (text, expected) in [
+        ("let a = map(0..1e12, x => x)", "this list has more than 1000 values"),
+        ("let a = concat(0..900, 0..900)", "this list has more than 1000 values"),
+        ("let a = sum(0..1e12)", "the scene takes more than 10000 steps to make"),
+        ("let a = scatter([0, 0, 0], [1, 1, 1], 1e-9)", "the scene takes more than 10000 steps to make"),
+    ] {
+        let message = evaluate_within(&request(text), small).map_err(|f| f.diagnostics[0].message.clone());
+        assert_eq!(message.err().as_deref(), Some(expected), "{text}");
     }
 }
 
