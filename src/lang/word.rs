@@ -38,12 +38,16 @@ pub enum Kind {
     Pattern,
     /// Colours.
     Color,
+    /// Colours by name.
+    ColorName,
     /// Lights.
     Light,
     /// Of the whole picture.
     Setting,
-    /// Numbers, angles, vectors.
+    /// Numbers and angles.
     Maths,
+    /// Vectors.
+    Vector,
     /// Lists and records.
     List,
     /// Texts.
@@ -64,9 +68,11 @@ impl Kind {
             Kind::Material => "Materials",
             Kind::Pattern => "Patterns",
             Kind::Color => "Colors",
+            Kind::ColorName => "Color names",
             Kind::Light => "Lights",
             Kind::Setting => "Settings",
-            Kind::Maths => "Numbers",
+            Kind::Maths => "Numbers and angles",
+            Kind::Vector => "Vectors",
             Kind::List => "Lists and records",
             Kind::Text => "Texts",
             Kind::Random => "Random",
@@ -138,6 +144,8 @@ pub enum Default {
     Degrees(f64),
     /// A vector.
     Vec3([f64; 3]),
+    /// Two numbers.
+    Vec2([f64; 2]),
     /// A truth value.
     Bool(bool),
     /// A text.
@@ -184,6 +192,8 @@ pub enum Ty {
     Directions(usize),
     /// Two whole numbers.
     Pair,
+    /// Two lengths.
+    Size,
     /// A truth value.
     Bool,
     /// A text.
@@ -200,6 +210,8 @@ pub enum Ty {
     ColorPaint,
     /// A number or a pattern of numbers.
     NumberPaint,
+    /// At least two numbers, colours or patterns.
+    Paints,
     /// A material.
     Material,
     /// A shape, light or group.
@@ -294,6 +306,7 @@ impl Default {
             Default::Number(n) => Value::Number(n),
             Default::Degrees(a) => Value::Angle(a),
             Default::Vec3(v) => Value::Vec3(v),
+            Default::Vec2(v) => Value::list(v.map(Value::Number).into()),
             Default::Bool(b) => Value::Bool(b),
             Default::Text(t) => Value::Text(t.into()),
             Default::Gray(v) => Value::Color(crate::scene::Color::from_srgb([v; 3])),
@@ -402,6 +415,10 @@ impl Param {
                 }
                 Ok(())
             }
+            (Ty::Size, Value::List(items)) => items.iter().try_for_each(|v| match v {
+                Value::Number(n) => bounded(*n).and_then(|()| size(*n)),
+                _ => Ok(()),
+            }),
             (Ty::Pair, Value::List(items)) => {
                 items.iter().try_for_each(|v| if let Value::Number(n) = v { bounded(*n) } else { Ok(()) })
             }
@@ -484,6 +501,12 @@ impl Ty {
             (Ty::Pair, Value::List(items)) => {
                 items.len() == 2 && items.iter().all(|v| matches!(v, Value::Number(n) if n.fract() == 0.0))
             }
+            (Ty::Size, Value::List(items)) => items.len() == 2 && items.iter().all(|v| matches!(v, Value::Number(_))),
+            (Ty::Paints, Value::Vec3(_)) => true,
+            (Ty::Paints, Value::List(items)) => {
+                let paint = |v: &Value| matches!(v, Value::Number(_) | Value::Color(_) | Value::Pattern(_));
+                items.len() >= 2 && items.iter().all(paint)
+            }
             (Ty::Bool, Value::Bool(_)) | (Ty::Text, Value::Text(_)) => true,
             (Ty::Choice(words), Value::Text(t)) => words.contains(&t.as_str()),
             (Ty::Color | Ty::ColorPaint | Ty::Paint | Ty::Level, Value::Color(_)) => true,
@@ -513,6 +536,8 @@ impl Ty {
             Ty::Points(n) => format!("a list of {n} points `[x, y, z]`"),
             Ty::Directions(n) => format!("a list of {n} directions `[x, y, z]`"),
             Ty::Pair => "two whole numbers `[width, height]`".into(),
+            Ty::Size => "two numbers `[width, height]`".into(),
+            Ty::Paints => "a list of at least two numbers, colors or patterns".into(),
             Ty::Bool => "`true` or `false`".into(),
             Ty::Text => "a text".into(),
             Ty::Choice(words) => {
@@ -547,6 +572,8 @@ pub(super) trait Args {
     fn given(&self, i: usize) -> bool;
     /// True.
     fn is_true(&self, i: usize) -> bool;
+    /// A number of a list.
+    fn item(&self, i: usize, k: u64) -> f64;
     /// A colour.
     fn color(&self, i: usize) -> crate::scene::Color;
     /// `N` points, where they were given.
@@ -577,6 +604,12 @@ impl Args for [Value] {
     }
     fn is_true(&self, i: usize) -> bool {
         matches!(self.get(i), Some(Value::Bool(true)))
+    }
+    fn item(&self, i: usize, k: u64) -> f64 {
+        match self.get(i).and_then(|v| v.item(k)) {
+            Some(Value::Number(n)) => n,
+            _ => 0.0,
+        }
     }
     fn color(&self, i: usize) -> crate::scene::Color {
         match self.get(i) {

@@ -247,7 +247,7 @@ mod tests {
         let all = boxes(500);
         let tree = Bvh::build(all.clone());
         let mut met = 0;
-        for i in 0..300u64 {
+        for i in 0..2_000u64 {
             let random = |k: u64| KeyedHash::new().with(77).with(i).with(k).unit();
             let o = [0, 1, 2].map(|k| random(k) * 100.0);
             let d = [3, 4, 5].map(|k| if random(k + 9) < 0.1 { 0.0 } else { random(k) - 0.5 });

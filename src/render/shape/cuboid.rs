@@ -59,11 +59,16 @@ mod tests {
 
     fn hits(o: [f64; 3], d: [f64; 3]) -> Vec<(f64, f64)> {
         let mut out = Vec::new();
-        crossings([1.0, 2.0, 3.0], &LocalRay { o, o_lo: [0.0; 3], d }, None, &mut |t, part, ok| {
-            if ok.0 {
-                out.push((t, part));
-            }
-        });
+        crossings(
+            [1.0, 2.0, 3.0],
+            &LocalRay { o, o_lo: [0.0; 3], d },
+            None,
+            &mut |t: f64, part: f64, ok: crate::math::real::Bool| {
+                if ok.0 {
+                    out.push((t, part));
+                }
+            },
+        );
         out
     }
 

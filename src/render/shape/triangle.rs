@@ -120,7 +120,7 @@ mod tests {
 
     fn hit(t: &TriangleData, o: [f64; 3], d: [f64; 3]) -> Option<f64> {
         let mut out = None;
-        crossing(t, o, d, None, &mut |t, _, ok| out = ok.0.then_some(t));
+        crossing(t, o, d, None, &mut |t: f64, _: f64, ok: crate::math::real::Bool| out = ok.0.then_some(t));
         out
     }
 

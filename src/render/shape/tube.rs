@@ -132,7 +132,7 @@ mod tests {
     fn hits(tube: &Tube, o: [f64; 3], d: [f64; 3]) -> Vec<(f64, f64)> {
         let mut out = Vec::new();
         let ray = LocalRay { o, o_lo: [0.0; 3], d };
-        crossings(tube, &ray, None, &mut |t, part, ok| {
+        crossings(tube, &ray, None, &mut |t: f64, part: f64, ok: crate::math::real::Bool| {
             if ok.0 && t > 0.0 {
                 out.push((t, part));
             }
@@ -169,7 +169,7 @@ mod tests {
         let ray = LocalRay { o, o_lo: [0.0; 3], d: [-1.0, 0.0, 0.0] };
         let mut left = Vec::new();
         let own = Own { here: crate::math::real::Bool(true), part: SIDE };
-        crossings(&CAN, &ray, Some(own), &mut |t, _, ok| {
+        crossings(&CAN, &ray, Some(own), &mut |t: f64, _: f64, ok: crate::math::real::Bool| {
             if ok.0 {
                 left.push(t);
             }
