@@ -4,6 +4,7 @@ use super::args::{Cli, HelpArgs};
 use super::view::nearest;
 use super::{Exit, Stop};
 use crate::diag::Diagnostic;
+use crate::lang;
 use clap::CommandFactory;
 use std::io::{self, Write};
 
@@ -22,10 +23,12 @@ pub fn run(args: &HelpArgs) -> Result<Exit, Stop> {
 
 fn overview() -> String {
     let mut text = Cli::command().render_help().to_string();
-    let topics = vocabulary::topics();
-    if !topics.is_empty() {
-        text += "\nWords of the scene language, each with `rtdsl help WORD`:\n";
-        text += &columns(&topics);
+    text += "\nThe scene language; `rtdsl help WORD` tells of each of these, and of every color name of CSS:\n";
+    for chapter in lang::chapters() {
+        let topics = lang::chapter_topics(chapter);
+        if !topics.is_empty() {
+            text += &format!("\n{chapter}:\n{}", columns(&topics));
+        }
     }
     text
 }
@@ -34,7 +37,7 @@ fn overview() -> String {
 fn about(topic: &str) -> Result<String, Stop> {
     let mut cli = Cli::command();
     let command = cli.find_subcommand_mut(topic);
-    match (vocabulary::help(topic), command) {
+    match (lang::help(topic), command) {
         (Some(word), None) => Ok(word),
         (Some(word), Some(_)) => Ok(format!("{word}\n`rtdsl {topic} --help` tells of the command of that name.\n")),
         (None, Some(command)) => {
@@ -47,7 +50,7 @@ fn about(topic: &str) -> Result<String, Stop> {
 
 fn unknown(topic: &str) -> Stop {
     let cli = Cli::command();
-    let mut words = vocabulary::topics();
+    let mut words = lang::topics();
     words.extend(cli.get_subcommands().map(|c| c.get_name()));
     let mut d = Diagnostic::error(format!("`{topic}` is neither a word of the scene language nor a command"));
     if let Some(near) = nearest(topic, &words) {
@@ -64,28 +67,19 @@ fn columns(words: &[&str]) -> String {
     words.chunks(in_a_line).map(|c| format!("  {}\n", line(c).trim_end())).collect()
 }
 
-/// What the language knows of its words.
-mod vocabulary {
-    /// All about one word, ending in a newline; `None` if there is no such word.
-    pub fn help(_topic: &str) -> Option<String> {
-        None
-    }
-
-    /// Every word.
-    pub fn topics() -> Vec<&'static str> {
-        Vec::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn commands_are_topics() {
-        assert!(about("render").unwrap().contains("--max-depth"));
+        assert!(about("explain").unwrap().contains("--max-depth"));
+        let both = about("render").unwrap();
+        assert!(both.contains("grid(2)") && both.contains("rtdsl render --help"), "{both}");
         assert!(about("no such word").is_err());
-        assert!(overview().contains("explain"));
+        let all = overview();
+        assert!(["explain", "torus", "|>", "scatter"].iter().all(|w| all.contains(w)), "{all}");
+        assert!(about("tomato").is_ok() && !all.contains("tomato"));
     }
 
     #[test]

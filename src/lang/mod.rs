@@ -21,6 +21,7 @@ mod param;
 mod parse;
 mod picture;
 mod property;
+mod reference;
 pub mod request;
 mod resolve;
 mod scan;
@@ -33,6 +34,7 @@ mod ty;
 mod value;
 pub mod word;
 
+pub use reference::{chapter, chapter_topics, chapters, help, topics};
 pub use request::{Evaluated, Failure, Input, Param, ParamKind, Request};
 
 use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};

@@ -113,7 +113,11 @@ impl Bounds {
     }
     /// In words: `above 0`, `from 1 to 10`.
     pub fn text(&self) -> String {
-        let (least, most) = (number_text(self.least), number_text(self.most));
+        self.text_in("")
+    }
+    /// In words, with a unit: `above 0deg and below 180deg`.
+    pub fn text_in(&self, unit: &str) -> String {
+        let [least, most] = [self.least, self.most].map(|x| format!("{}{unit}", number_text(x)));
         match (self.least_included, self.most.is_finite(), self.most_included) {
             (true, false, _) => format!("at least {least}"),
             (false, false, _) => format!("above {least}"),
@@ -176,13 +180,9 @@ impl Param {
             }
             (Ty::Number | Ty::Whole | Ty::NumberPaint | Ty::Paint | Ty::Level, Value::Number(n)) => bounded(*n),
             (Ty::Angle, Value::Angle(a)) => match self.range {
-                Some(b) if !b.allow(*a) => Err(Fault::new(format!(
-                    "`{}` must be above {}deg and below {}deg, got {}",
-                    self.name,
-                    number_text(b.least),
-                    number_text(b.most),
-                    value.show(60)
-                ))),
+                Some(b) if !b.allow(*a) => {
+                    Err(Fault::new(format!("`{}` must be {}, got {}", self.name, b.text_in("deg"), value.show(60))))
+                }
                 _ => Ok(()),
             },
             (Ty::Paint | Ty::Level, Value::Color(c)) if self.range.is_some() => c.0.into_iter().try_for_each(bounded),

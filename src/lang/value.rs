@@ -207,6 +207,13 @@ impl Value {
         }
     }
 
+    /// `#rrggbb` of a color that a picture can show; empty for other values.
+    pub fn color_code(&self) -> String {
+        let Value::Color(c) = self else { return String::new() };
+        let [r, g, b] = c.to_srgb().map(|v| (v * 255.0).round() as u8);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+
     /// Whether two values are equal; functions can't be compared.
     pub fn equals(&self, other: &Value) -> Result<bool, Box<Fault>> {
         Ok(match (self, other) {

@@ -138,10 +138,18 @@ impl Word {
                 d => format!("{}: {}", p.name, d.text()),
             })
             .collect();
-        match self.run {
-            Run::Constant(_) => self.name.to_owned(),
+        match (&self.run, self.params) {
+            (Run::Constant(_), _) => self.name.to_owned(),
+            // `record(…)` takes any names, `group(…) { … }` a block.
+            (Run::Syntax, []) => format!("{}(name: value, …)", self.name),
+            (Run::Syntax, _) => format!("{}({}) {{ … }}", self.name, params.join(", ")),
             _ => format!("{}({})", self.name, params.join(", ")),
         }
+    }
+
+    /// The value of a word that is one.
+    pub(super) fn constant(&self) -> Option<Value> {
+        if let Run::Constant(make) = self.run { Some(make()) } else { None }
     }
 
     /// Checks arguments in place and fills in defaults.

@@ -38,7 +38,7 @@ pub const WORDS: &[Word] = &[
         name: "gray",
         kind: Kind::Color,
         params: &[required("value", Ty::Number, "0 for black to 1 for white, sRGB").within(0.0, 1.0)],
-        doc: "A grey.",
+        doc: "A gray.",
         example: "sphere(mat: matte(gray(0.8)))\nlight(at: [4, 8, 6])",
         run: Run::Call(|_, a| Ok(Value::Color(Color::from_srgb([a.number(0); 3])))),
     },
@@ -47,7 +47,7 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Color,
         params: &[
             required("hue", Ty::Angle, "0deg is red, 120deg green, 240deg blue"),
-            required("saturation", Ty::Number, "0 for grey to 1").within(0.0, 1.0),
+            required("saturation", Ty::Number, "0 for gray to 1").within(0.0, 1.0),
             required("value", Ty::Number, "0 for black to 1").within(0.0, 1.0),
         ],
         doc: "A color from hue, saturation and value.",
@@ -59,7 +59,7 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Color,
         params: &[
             required("lightness", Ty::Number, "0 for black to 1 for white").within(0.0, 1.0),
-            required("chroma", Ty::Number, "how colorful: 0 for grey, about 0.3 at most").within(0.0, 1.0),
+            required("chroma", Ty::Number, "how colorful: 0 for gray, about 0.3 at most").within(0.0, 1.0),
             required("hue", Ty::Angle, "about 30deg is red, 140deg green, 260deg blue"),
         ],
         doc: "A color from lightness, chroma and hue as the eye judges them (Oklch); where a screen can't show so much chroma, it has the most that can be shown.",

@@ -9,7 +9,7 @@ pub const WORDS: &[Word] = &[Word {
     kind: Kind::Light,
     params: &[
         required("at", Ty::Point, "where it is"),
-        optional("color", Ty::Level, Default::Number(1.0), "its color, or a number for a grey; white unless given")
+        optional("color", Ty::Level, Default::Number(1.0), "its color, or a number for a gray; white unless given")
             .at_least(0.0),
         optional("power", Ty::Number, Default::Number(1.0), "a factor on its color").at_least(0.0),
         optional("name", Ty::Text, Default::Absent, "what messages and `explain` call it"),

@@ -17,8 +17,11 @@ mod random;
 mod scatter;
 mod setting;
 mod shape;
+mod topic;
 mod transform;
 mod vector;
+
+pub use topic::{TOPICS, Topic};
 
 use super::value::BuiltinId;
 use super::word::{Param, Word};

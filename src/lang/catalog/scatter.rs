@@ -45,11 +45,11 @@ fn scatter(host: &mut dyn Host, a: &[Value]) -> Outcome {
     let most = host.build().limits.list_length;
     // Points are surrounded in the order in which they were found: no stack to disturb, and every run the same.
     let mut next = 0;
-    while let Some(centre) = region.points.get(next).copied() {
+    while let Some(center) = region.points.get(next).copied() {
         let around = hash.with(3).with(next as u64);
         for k in 0..TRIES {
             host.spend(1)?;
-            let p = region.near(centre, around.with(k));
+            let p = region.near(center, around.with(k));
             if region.is_free(p) {
                 region.add(p);
             }

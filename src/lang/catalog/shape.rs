@@ -7,7 +7,7 @@ use crate::scene::{NodeKind, Shape, range};
 use glam::DVec3;
 
 const MAT: Param =
-    optional("mat", Ty::Material, Default::Absent, "its material; without one, the group's, or a plain grey");
+    optional("mat", Ty::Material, Default::Absent, "its material; without one, the group's, or a plain gray");
 const NAME: Param = optional("name", Ty::Text, Default::Absent, "what messages and `explain` call it");
 const ORIGIN: Default = Default::Vec3([0.0; 3]);
 const UP: Default = Default::Vec3([0.0, 1.0, 0.0]);
@@ -17,7 +17,7 @@ pub const WORDS: &[Word] = &[
         name: "sphere",
         kind: Kind::Shape,
         params: &[
-            optional("at", Ty::Point, ORIGIN, "its centre"),
+            optional("at", Ty::Point, ORIGIN, "its center"),
             optional("r", Ty::Length, Default::Number(1.0), "its radius").above(0.0),
             MAT,
             NAME,
@@ -47,13 +47,13 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Shape,
         params: &[
             optional("size", Ty::Point, Default::Absent, "its width, height and depth").above(0.0),
-            optional("at", Ty::Point, Default::Absent, "its centre, [0, 0, 0] unless given"),
+            optional("at", Ty::Point, Default::Absent, "its center, [0, 0, 0] unless given"),
             optional("from", Ty::Point, Default::Absent, "one corner"),
             optional("to", Ty::Point, Default::Absent, "the opposite corner"),
             MAT,
             NAME,
         ],
-        doc: "A box along the axes, given by `size` and its centre `at`, or by two opposite corners `from` and `to`.",
+        doc: "A box along the axes, given by `size` and its center `at`, or by two opposite corners `from` and `to`.",
         example: "box(size: [2, 1, 2])\nbox(from: [2, 0, 0], to: [3, 1, 1])\nlight(at: [4, 8, 6])",
         run: Run::Call(box_),
     },
@@ -61,7 +61,7 @@ pub const WORDS: &[Word] = &[
         name: "disc",
         kind: Kind::Shape,
         params: &[
-            optional("at", Ty::Point, ORIGIN, "its centre"),
+            optional("at", Ty::Point, ORIGIN, "its center"),
             optional("normal", Ty::Direction, UP, "the direction that it faces"),
             optional("r", Ty::Length, Default::Number(1.0), "its radius").above(0.0),
             optional("hole", Ty::Length, Default::Number(0.0), "the radius of a hole in its middle").at_least(0.0),
@@ -76,8 +76,8 @@ pub const WORDS: &[Word] = &[
         name: "cylinder",
         kind: Kind::Shape,
         params: &[
-            optional("from", Ty::Point, ORIGIN, "the centre of one end"),
-            optional("to", Ty::Point, UP, "the centre of the other end"),
+            optional("from", Ty::Point, ORIGIN, "the center of one end"),
+            optional("to", Ty::Point, UP, "the center of the other end"),
             optional("r", Ty::Length, Default::Number(1.0), "its radius").above(0.0),
             optional("caps", Ty::Bool, Default::Bool(true), "whether its ends are closed"),
             MAT,
@@ -91,8 +91,8 @@ pub const WORDS: &[Word] = &[
         name: "cone",
         kind: Kind::Shape,
         params: &[
-            optional("from", Ty::Point, ORIGIN, "the centre of its base"),
-            optional("to", Ty::Point, UP, "its tip, or the centre of its top"),
+            optional("from", Ty::Point, ORIGIN, "the center of its base"),
+            optional("to", Ty::Point, UP, "its tip, or the center of its top"),
             optional("r", Ty::Length, Default::Number(1.0), "the radius at `from`").at_least(0.0),
             optional("top", Ty::Length, Default::Number(0.0), "the radius at `to`").at_least(0.0),
             optional("caps", Ty::Bool, Default::Bool(true), "whether its ends are closed"),
@@ -107,7 +107,7 @@ pub const WORDS: &[Word] = &[
         name: "torus",
         kind: Kind::Shape,
         params: &[
-            optional("at", Ty::Point, ORIGIN, "its centre"),
+            optional("at", Ty::Point, ORIGIN, "its center"),
             optional("r", Ty::Length, Default::Number(1.0), "the radius of the circle in the middle of the tube")
                 .above(0.0),
             optional("tube", Ty::Length, Default::Number(0.25), "the radius of the tube, below `r`").above(0.0),
@@ -137,12 +137,12 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Shape,
         params: &[
             optional("points", Ty::Points(4), Default::Absent, "its corners"),
-            optional("at", Ty::Point, Default::Absent, "its centre, [0, 0, 0] unless given"),
+            optional("at", Ty::Point, Default::Absent, "its center, [0, 0, 0] unless given"),
             optional("size", Ty::Length, Default::Absent, "the length of its edges, 1 unless given").above(0.0),
             MAT,
             NAME,
         ],
-        doc: "A solid with four corners, given by them, or a regular one by its centre and the length of its edges.",
+        doc: "A solid with four corners, given by them, or a regular one by its center and the length of its edges.",
         example: "tetrahedron(at: [0, 1, 0], size: 2)\nlight(at: [4, 8, 6])",
         run: Run::Call(tetrahedron),
     },
