@@ -33,6 +33,8 @@ struct PatternTraits {
     number: bool,
     /// Patterns within it, itself included.
     depth: u32,
+    /// Patterns that are evaluated for it, itself included.
+    size: u64,
 }
 
 /// A picture file as a scene names it.
@@ -52,7 +54,7 @@ impl Build {
         let scene = Scene::empty();
         let default = scene.materials[0].clone();
         let traits = (0..scene.patterns.len() as u32)
-            .map(|i| PatternTraits { number: PatternId(i) != default.color, depth: 1 })
+            .map(|i| PatternTraits { number: PatternId(i) != default.color, depth: 1, size: 1 })
             .collect();
         Build {
             scene,
@@ -88,16 +90,22 @@ impl Build {
     /// Stores a pattern; it is one of numbers if all its children are.
     pub fn pattern(&mut self, kind: PatternKind, span: Span) -> Result<Value, Box<Fault>> {
         self.check_count(self.scene.patterns.len(), "patterns")?;
-        let mut traits = PatternTraits { number: !matches!(kind, PatternKind::Image { .. }), depth: 1 };
+        let mut traits = PatternTraits { number: !matches!(kind, PatternKind::Image { .. }), depth: 1, size: 1 };
         for child in kind.children() {
             let child = self.traits[child.0 as usize];
             traits.number &= child.number;
             traits.depth = traits.depth.max(child.depth + 1);
+            traits.size = traits.size.saturating_add(child.size);
         }
         let most = self.limits.pattern_depth;
         if traits.depth > most {
             return Err(Fault::new(format!("patterns are nested more than {most} deep"))
                 .note("usually a loop that wraps a pattern in itself"));
+        }
+        let most = self.limits.pattern_size;
+        if traits.size > most {
+            return Err(Fault::new(format!("this pattern is made of more than {most} patterns"))
+                .note("each counts as often as it is used: a pattern of two that are of two is made of seven"));
         }
         self.scene.patterns.push(Pattern { kind, span: Some(span) });
         self.traits.push(traits);
@@ -111,7 +119,7 @@ impl Build {
             return *id;
         }
         self.scene.patterns.push(Pattern::constant(color));
-        self.traits.push(PatternTraits { number, depth: 1 });
+        self.traits.push(PatternTraits { number, depth: 1, size: 1 });
         let id = PatternId(self.scene.patterns.len() as u32 - 1);
         self.constants.insert(key, id);
         id

@@ -27,6 +27,8 @@ pub struct Limits {
     pub instances: u64,
     /// Patterns within patterns: the tracer's recursion.
     pub pattern_depth: u32,
+    /// Patterns that one pattern is made of, each counted at every use: the tracer evaluates them as a tree, at every hit.
+    pub pattern_size: u64,
     /// Texels of one picture file.
     pub image_texels: u64,
     /// Mistakes reported in one run.
@@ -57,6 +59,7 @@ impl Default for Limits {
             objects: 10_000_000,
             instances: 10_000_000,
             pattern_depth: 200,
+            pattern_size: 100_000,
             image_texels: 1 << 28,
             errors: 50,
         }

@@ -268,6 +268,10 @@ impl Host for Machine<'_> {
         self.steps += n;
         if self.steps > self.limits.steps { Err(Stop::Fault(self.out_of_steps())) } else { Ok(()) }
     }
+    fn hold(&mut self, inner: &Value) -> Result<(), Stop> {
+        let here = self.here;
+        Machine::hold(self, inner, here)
+    }
 }
 
 /// A word's name.

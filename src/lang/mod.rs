@@ -4,6 +4,7 @@
 //! names into slots and makes the `code` that `eval` runs; [`catalog`] is the vocabulary; `build` holds the scene
 //! meanwhile; `finish` takes the last look. Mistakes of all phases come out together, in the order of the text.
 
+mod args;
 mod ast;
 mod build;
 mod call;
@@ -19,6 +20,7 @@ mod ops;
 mod param;
 mod parse;
 mod picture;
+mod property;
 pub mod request;
 mod resolve;
 mod scan;
@@ -27,6 +29,7 @@ mod suggest;
 mod syntax;
 #[cfg(test)]
 mod tests;
+mod ty;
 mod value;
 pub mod word;
 

@@ -23,6 +23,13 @@ pub fn binary(op: Op, a: &Value, b: &Value, build: &mut Build, span: Span) -> Ma
     }
 }
 
+/// (1 − u)·a + u·b: weights rather than a + u·(b − a), so that both ends are exact.
+pub fn lerp(a: &Value, b: &Value, u: f64, build: &mut Build, span: Span) -> Made {
+    let x = binary(Op::Multiply, &Value::Number(1.0 - u), a, build, span)?;
+    let y = binary(Op::Multiply, &Value::Number(u), b, build, span)?;
+    binary(Op::Add, &x, &y, build, span)
+}
+
 /// `-a`
 pub fn negate(a: &Value, build: &mut Build, span: Span) -> Made {
     match a {

@@ -31,6 +31,31 @@ pub fn tan_deg(degrees: f64) -> f64 {
     if (degrees % 45.0 == 0.0) && c != 0.0 { sign_or_zero(s) * sign_or_zero(c) } else { s / c }
 }
 
+/// The angle in degrees, −90 to 90, whose sine is `x`; NaN outside −1..=1. `sin_deg` of it is `x` again wherever a float is.
+pub fn asin_deg(x: f64) -> f64 {
+    if x.abs() == 0.5 { 30f64.copysign(x) } else { returning(asin(x).to_degrees(), sin_deg, x) }
+}
+
+/// The angle in degrees, 0 to 180, whose cosine is `x`; NaN outside −1..=1. `cos_deg` of it is `x` again wherever a float is.
+pub fn acos_deg(x: f64) -> f64 {
+    match x {
+        0.5 => 60.0,
+        -0.5 => 120.0,
+        _ => returning(acos(x).to_degrees(), cos_deg, x),
+    }
+}
+
+/// The angle in degrees, between −90 and 90, whose tangent is `x`. `tan_deg` of it is `x` again wherever a float is.
+pub fn atan_deg(x: f64) -> f64 {
+    returning(atan(x).to_degrees(), tan_deg, x)
+}
+
+/// `d`, or a float near it for which `f` gives `x`: the radians' rounding to degrees costs an ulp or two.
+fn returning(d: f64, f: fn(f64) -> f64, x: f64) -> f64 {
+    let (up, down) = (d.next_up(), d.next_down());
+    [d, up, down, up.next_up(), down.next_down()].into_iter().find(|d| f(*d) == x).unwrap_or(d)
+}
+
 fn sign_or_zero(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { 1f64.copysign(x) }
 }
@@ -65,6 +90,22 @@ mod tests {
             assert_eq!(sin_deg(turn + 180.0), 0.0);
             assert_eq!(tan_deg(turn + 45.0), 1.0);
             assert_eq!(tan_deg(turn + 135.0), -1.0);
+        }
+    }
+
+    #[test]
+    fn inverses_lead_back() {
+        assert_eq!(
+            [asin_deg(-0.5), asin_deg(1.0), acos_deg(0.0), acos_deg(-0.5), atan_deg(-1.0)],
+            [-30.0, 90.0, 90.0, 120.0, -45.0]
+        );
+        assert!(asin_deg(1.1).is_nan() && acos_deg(-2.0).is_nan());
+        assert_eq!(tan_deg(2.0 * atan_deg(0.25) / 2.0), 0.25);
+        let back = (1..1000).filter(|i| tan_deg(atan_deg(f64::from(*i) / 1000.0)) == f64::from(*i) / 1000.0);
+        assert!(back.count() > 650, "most have such an angle");
+        for i in -100..=100 {
+            let x = f64::from(i) / 100.0;
+            assert!((sin_deg(asin_deg(x)) - x).abs() < 1e-15 && (cos_deg(acos_deg(x)) - x).abs() < 1e-15);
         }
     }
 

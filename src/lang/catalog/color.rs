@@ -9,19 +9,6 @@ const fn channel(name: &'static str) -> Param {
     required(name, Ty::Number, "0 to 1").within(0.0, 1.0)
 }
 
-macro_rules! named {
-    ($name:literal, $r:literal $g:literal $b:literal) => {
-        Word {
-            name: $name,
-            kind: Kind::Color,
-            params: &[],
-            doc: concat!("The color that CSS calls ", $name, "."),
-            example: concat!("sphere(mat: matte(", $name, "))\nlight(at: [4, 8, 6])"),
-            run: Run::Constant(|| Value::Color(Color::from_srgb8([$r, $g, $b]))),
-        }
-    };
-}
-
 pub const WORDS: &[Word] = &[
     Word {
         name: "rgb",
@@ -67,24 +54,33 @@ pub const WORDS: &[Word] = &[
         example: "for i in 0..6 { sphere(at: [2 * i, 0, 0], mat: matte(hsv(i * 60deg, 0.8, 1))) }\nlight(at: [4, 8, 6])",
         run: Run::Call(|_, a| Ok(Value::Color(Color::from_hsv(a.number(0), a.number(1), a.number(2))))),
     },
-    named!("black", 0 0 0),
-    named!("white", 255 255 255),
-    named!("silver", 192 192 192),
-    named!("red", 255 0 0),
-    named!("green", 0 128 0),
-    named!("blue", 0 0 255),
-    named!("yellow", 255 255 0),
-    named!("cyan", 0 255 255),
-    named!("magenta", 255 0 255),
-    named!("orange", 255 165 0),
-    named!("gold", 255 215 0),
-    named!("pink", 255 192 203),
-    named!("purple", 128 0 128),
-    named!("brown", 165 42 42),
-    named!("navy", 0 0 128),
-    named!("teal", 0 128 128),
-    named!("olive", 128 128 0),
-    named!("maroon", 128 0 0),
-    named!("lime", 0 255 0),
-    named!("skyblue", 135 206 235),
+    Word {
+        name: "oklch",
+        kind: Kind::Color,
+        params: &[
+            required("lightness", Ty::Number, "0 for black to 1 for white").within(0.0, 1.0),
+            required("chroma", Ty::Number, "how colorful: 0 for grey, about 0.3 at most").within(0.0, 1.0),
+            required("hue", Ty::Angle, "about 30deg is red, 140deg green, 260deg blue"),
+        ],
+        doc: "A color from lightness, chroma and hue as the eye judges them (Oklch); where a screen can't show so much chroma, it has the most that can be shown.",
+        example: "for i in 0..12 {\n  let hue = i * 30deg\n  sphere(at: [3 * cos(hue), 3 * sin(hue), 0], r: 0.7, mat: matte(oklch(0.7, 0.12, hue)))\n}\nlight(at: [4, 8, 6])",
+        run: Run::Call(|_, a| Ok(Value::Color(oklch(a.number(0), a.number(1), a.number(2))))),
+    },
 ];
+
+/// The color, its chroma lowered until all channels lie in 0..=1.
+fn oklch(lightness: f64, chroma: f64, hue: f64) -> Color {
+    // Oklab's matrices are rounded: white comes out this much off.
+    const ROUNDING: f64 = 1e-6;
+    let fits = |c: Color| c.0.iter().all(|v| (-ROUNDING..=1.0 + ROUNDING).contains(v));
+    let (mut low, mut high) = (0.0, chroma);
+    if fits(Color::from_oklch(lightness, chroma, hue)) {
+        low = chroma;
+    }
+    // Halving 40 times leaves less than a 1e-12th.
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if fits(Color::from_oklch(lightness, middle, hue)) { low = middle } else { high = middle }
+    }
+    Color(Color::from_oklch(lightness, low, hue).0.map(|v| v.clamp(0.0, 1.0)))
+}

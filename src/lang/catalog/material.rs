@@ -30,7 +30,7 @@ pub const WORDS: &[Word] = &[
         name: "phong",
         kind: Kind::Material,
         params: SLOTS,
-        doc: "A material after Phong: matte color, highlights, mirror image and transparency.",
+        doc: "A material by Phong's formula: matte color, highlights, mirror image and transparency, each a plain value or a pattern.",
         example: "sphere(mat: phong(color: #c33, specular: 0.5, shininess: 60, reflect: 0.1))\nlight(at: [4, 8, 6])",
         run: Run::Call(phong),
     },
@@ -38,9 +38,36 @@ pub const WORDS: &[Word] = &[
         name: "matte",
         kind: Kind::Material,
         params: &[required("color", Ty::ColorPaint, "its color")],
-        doc: "A material without highlights.",
+        doc: "A material without highlights: `phong(color: …)`.",
         example: "sphere(mat: matte(#c33))\nlight(at: [4, 8, 6])",
         run: Run::Call(|host, a| with(host, &[("color", a[0].clone())])),
+    },
+    Word {
+        name: "plastic",
+        kind: Kind::Material,
+        params: &[required("color", Ty::ColorPaint, "its color")],
+        doc: "A smooth, colored material with white highlights: `phong(color: …, specular: 0.5, shininess: 60)`.",
+        example: "sphere(mat: plastic(tomato))\nsphere(at: [2.5, 0, 0], mat: plastic(checker(white, teal, size: 0.5)))\nlight(at: [4, 8, 6])",
+        run: Run::Call(|host, a| {
+            with(host, &[("color", a[0].clone()), ("specular", Value::Number(0.5)), ("shininess", Value::Number(60.0))])
+        }),
+    },
+    Word {
+        name: "metal",
+        kind: Kind::Material,
+        params: &[
+            required("color", Ty::ColorPaint, "its color, which its mirror image and its highlights have too"),
+            optional("reflect", Ty::Number, Default::Number(0.6), "how much it mirrors").at_least(0.0),
+        ],
+        doc: "A polished metal: a little matte color, and highlights and a mirror image in that color.",
+        example: "sphere(mat: metal(gold))\nplane(y: -1, mat: matte(checker(gray(0.9), gray(0.3))))\nbackground(skyblue)\nlight(at: [4, 8, 6])",
+        run: Run::Call(|host, a| {
+            let span = host.place().span;
+            let reflect = ops::binary(Op::Multiply, &a[0], &a[1], host.build(), span)?;
+            let n = Value::Number;
+            let slots = [("color", a[0].clone()), ("diffuse", n(0.4)), ("specular", a[0].clone())];
+            with(host, &[&slots[..], &[("shininess", n(80.0)), ("reflect", reflect)]].concat())
+        }),
     },
     Word {
         name: "mirror",
@@ -49,7 +76,7 @@ pub const WORDS: &[Word] = &[
             optional("tint", Ty::Paint, Default::Number(1.0), "the color of what it mirrors").at_least(0.0),
             optional("reflect", Ty::Number, Default::Number(0.9), "how much of it").at_least(0.0),
         ],
-        doc: "A mirror.",
+        doc: "A mirror without a color of its own, but with a small highlight.",
         example: "sphere(mat: mirror(tint: #fd8))\nplane(y: -1, mat: matte(checker(white, black)))\nlight(at: [4, 8, 6])",
         run: Run::Call(|host, a| {
             let span = host.place().span;

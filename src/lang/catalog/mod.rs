@@ -3,16 +3,22 @@
 //!
 //! To add a word, add an entry to the table of its topic and the function beside it.
 
+mod angle;
 mod color;
+mod css;
+mod image;
 mod light;
 mod list;
 mod material;
 mod maths;
+mod mixture;
 mod pattern;
 mod random;
+mod scatter;
 mod setting;
 mod shape;
 mod transform;
+mod vector;
 
 use super::value::BuiltinId;
 use super::word::{Param, Word};
@@ -27,17 +33,23 @@ struct Catalog {
 fn tables() -> &'static Catalog {
     static CATALOG: OnceLock<Catalog> = OnceLock::new();
     CATALOG.get_or_init(|| {
-        let tables: [&'static [Word]; 10] = [
+        let tables: [&'static [Word]; 16] = [
             shape::WORDS,
             transform::WORDS,
             material::WORDS,
             pattern::WORDS,
+            mixture::WORDS,
+            image::WORDS,
             color::WORDS,
+            css::WORDS,
             light::WORDS,
             setting::WORDS,
             maths::WORDS,
+            angle::WORDS,
+            vector::WORDS,
             list::WORDS,
             random::WORDS,
+            scatter::WORDS,
         ];
         let words: Vec<&'static Word> = tables.into_iter().flatten().collect();
         let ids = words.iter().enumerate().map(|(i, w)| (w.name, BuiltinId(i as u16))).collect();
@@ -66,33 +78,4 @@ pub(super) fn word(id: BuiltinId) -> &'static Word {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lang::word::{Default, Run};
-
-    #[test]
-    fn every_word_is_documented_once() {
-        assert_eq!(tables().ids.len(), catalog().len(), "a word stands twice");
-        for w in catalog() {
-            assert!(w.doc.ends_with('.') && w.doc.len() > 5, "{}: {}", w.name, w.doc);
-            assert!(!w.example.is_empty(), "{} has no example", w.name);
-            assert!(w.example.contains(w.name), "{}'s example doesn't show it", w.name);
-            for p in w.params {
-                assert!(!p.doc.is_empty(), "{}.{}", w.name, p.name);
-            }
-        }
-    }
-
-    #[test]
-    fn parameters_follow_the_rules() {
-        for w in catalog() {
-            let positional: Vec<bool> = w.params.iter().map(|p| p.positional).collect();
-            assert!(positional.is_sorted_by(|a, b| a >= b), "{}: what goes by position comes first", w.name);
-            assert!(w.params.iter().rev().skip(1).all(|p| !p.rest), "{}: rest is last", w.name);
-            if let Run::Constant(_) = w.run {
-                assert!(w.params.is_empty());
-            }
-            assert!(w.params.iter().all(|p| p.default != Default::Required || p.positional), "{}", w.name);
-        }
-    }
-}
+mod tests;

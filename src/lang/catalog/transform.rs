@@ -1,5 +1,6 @@
 //! What moves, turns, scales and distorts shapes, lights, groups and patterns; and `group` itself.
 
+use super::pattern::{OCTAVES, SEED};
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Param, Run, Ty, Word, optional, required};
@@ -60,11 +61,11 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Transform,
         params: &[
             required("pattern", Ty::Pattern, "comes before `|>`"),
-            required("amount", Ty::Number, "the largest displacement, about").at_least(0.0),
-            optional("octaves", Ty::Whole, Default::Number(4.0), "how many sizes of swirls").within(1.0, 16.0),
-            optional("seed", Ty::Whole, Default::Number(0.0), "another arrangement").within(0.0, 9007199254740992.0),
+            required("amount", Ty::Number, "about the largest displacement").at_least(0.0),
+            OCTAVES,
+            SEED,
         ],
-        doc: "Stirs a pattern.",
+        doc: "Stirs a pattern: every point of it is displaced by smooth noise.",
         example: "plane(y: 0, mat: matte(stripes(white, black) |> turbulence(0.4)))\nlight(at: [4, 8, 6])",
         run: Run::Call(|host, a| {
             let Some(Value::Pattern(child)) = a.first() else { return Ok(Value::None) };
