@@ -75,7 +75,8 @@ fn every_example_makes_a_picture() {
         let e = evaluated(&file, &[]);
         let film = picture(&e, 2);
         assert!(film.pixels.as_flattened().iter().all(|x| x.is_finite()), "{}", name(&file));
-        let mut colors: Vec<[u8; 3]> = film.pixels.iter().map(|p| p.map(|x| (x.clamp(0.0, 1.0) * 15.0) as u8)).collect();
+        let mut colors: Vec<[u8; 3]> =
+            film.pixels.iter().map(|p| p.map(|x| (x.clamp(0.0, 1.0) * 15.0) as u8)).collect();
         colors.sort_unstable();
         colors.dedup();
         // Even the plainest has a dozen clearly different colours; an empty or black picture has one or two.
@@ -112,8 +113,7 @@ fn suggested_parameters_are_accepted() {
     for file in scenes(&folder()) {
         let text = text(&file);
         for suggestion in text.split('`').filter(|part| part.starts_with("--set ")) {
-            let set: Vec<(&str, &str)> =
-                suggestion.split("--set ").filter_map(|s| s.trim().split_once('=')).collect();
+            let set: Vec<(&str, &str)> = suggestion.split("--set ").filter_map(|s| s.trim().split_once('=')).collect();
             assert!(!set.is_empty(), "{}: {suggestion}", name(&file));
             evaluated(&file, &set);
             tried += 1;
