@@ -61,11 +61,11 @@ fn features(all: &[Feature], memory_bytes: usize, sources: &Sources) -> String {
             let _ = writeln!(text, "\n{title}");
         }
         for f in rows {
-            let _ = write!(text, "  {:<width$}  ", f.name);
+            let mut row = format!("  {:<width$}  ", f.name);
             if let Some(place) = &f.required_by {
-                let _ = write!(text, "{}: ", sources.location(place.span));
+                let _ = write!(row, "{}: ", sources.location(place.span));
             }
-            let _ = writeln!(text, "{}", f.detail);
+            let _ = writeln!(text, "{}", (row + &f.detail).trim_end());
         }
     }
     let _ = writeln!(text, "\n{:.1} kB held for tracing", memory_bytes as f64 / 1e3);

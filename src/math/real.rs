@@ -216,7 +216,14 @@ macro_rules! scalar {
                 v: [Self; N],
                 mut f: impl FnMut([f64; N]) -> [f64; M],
             ) -> [Self; M] {
-                f(v.map(|x| x as f64)).map(|x| x as $t)
+                let (mut given, mut out) = ([0.0; N], [0.0; M]);
+                for (to, from) in given.iter_mut().zip(v) {
+                    *to = from as f64;
+                }
+                for (to, from) in out.iter_mut().zip(f(given)) {
+                    *to = from as $t;
+                }
+                out
             }
         }
         impl Lane for $t {

@@ -19,7 +19,7 @@ impl World {
         let by_shape = |name, what: &str, wanted: &dyn Fn(&Kind) -> bool| {
             let at = first(&|i| wanted(&self.primitives[i].kind));
             let count = self.primitives.iter().filter(|p| wanted(&p.kind)).count();
-            feature(name, at.map(|i| node_place(self.origins[i].0)), count > 0, format!("{count} {what}"))
+            feature(name, at.map(|i| node_place(self.origins[i].0)), count > 0, counted(count, "surface") + what)
         };
         let by_material = |name, detail: &str, wanted: &dyn Fn(&Surfacing) -> bool| {
             let at = first(&|i| wanted(surfacing(i)));
@@ -35,16 +35,16 @@ impl World {
         let texels = self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>();
         let linear = self.maps.len();
         vec![
-            by_shape("spheres", "surfaces", &|k| matches!(k, Kind::Sphere(_))),
-            by_shape("planes", "surfaces, without bounds: tested by every batch", &|k| matches!(k, Kind::Plane)),
-            by_shape("discs", "surfaces", &|k| matches!(k, Kind::Disc { .. })),
-            by_shape("boxes", "surfaces", &|k| matches!(k, Kind::Cuboid(_))),
-            by_shape("cylinders and cones", "surfaces", &|k| matches!(k, Kind::Tube(_))),
-            by_shape("tori", "surfaces", &|k| matches!(k, Kind::Ring(_))),
-            by_shape("triangles", "surfaces", &|k| matches!(k, Kind::Triangle(_))),
-            feature("turned or stretched frames", None, linear > 0, format!("{linear} maps")),
-            feature("shadows", light, lit, format!("{} lights", self.lights.len())),
-            by_material("highlights", "a power for each light", &|m| !m.specular.is_zero()),
+            by_shape("spheres", "", &|k| matches!(k, Kind::Sphere(_))),
+            by_shape("planes", ", without bounds: tested for every tile", &|k| matches!(k, Kind::Plane)),
+            by_shape("discs", "", &|k| matches!(k, Kind::Disc { .. })),
+            by_shape("boxes", "", &|k| matches!(k, Kind::Cuboid(_))),
+            by_shape("cylinders and cones", "", &|k| matches!(k, Kind::Tube(_))),
+            by_shape("tori", "", &|k| matches!(k, Kind::Ring(_))),
+            by_shape("triangles", "", &|k| matches!(k, Kind::Triangle(_))),
+            feature("turned or stretched frames", None, linear > 0, counted(linear, "map")),
+            feature("shadows", light, lit, counted(self.lights.len(), "light")),
+            by_material("highlights", "one power for each light and hit", &|m| !m.specular.is_zero()),
             by_material("mirror reflection", "one ray more for each hit", &|m| !m.reflect.is_zero()),
             by_material("transparency", "one ray more for each hit, dimmed shadows", &|m| m.lets_through()),
             by_material("refraction", "Fresnel's formulas and one mirrored ray for each hit", &|m| m.ior.is_some()),
@@ -58,6 +58,10 @@ impl World {
             by_material("bumps", "six evaluations of the pattern for each hit", &|m| m.bump.is_some()),
         ]
     }
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn feature(name: &'static str, required_by: Option<Place>, in_use: bool, detail: String) -> Feature {

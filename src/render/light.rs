@@ -36,36 +36,21 @@ pub fn occlusion<L: Lane>(
     let own = |k: u32| Some(Own { here: L::Mask::splat(k == source), part });
     let mut seen = [L::one(); 3];
     // Opaque ones first: they need no order.
-    let mut open = active;
+    let mut open = Open { mask: active, source, part, o, l, distance };
     scratch.transparent.clear();
-    let transparent = &mut scratch.transparent;
-    let mut test = |k: u32, open: L::Mask| -> L::Mask {
-        match world.constant_transmission(k) {
-            Some([0.0, 0.0, 0.0]) => {
-                let mut blocked = Blocked { distance, blocked: L::Mask::splat(false) };
-                world.primitives[k as usize].crossings::<L, false>(tables, o, l, own(k), &mut blocked);
-                open & !blocked.blocked
-            }
-            Some([1.0, 1.0, 1.0]) => open,
-            _ => {
-                transparent.push(k);
-                open
-            }
-        }
-    };
     for &k in &occluders.ids {
-        open = test(k, open);
-        if !open.any() {
+        open.test(world, k, &mut scratch.transparent);
+        if !open.mask.any() {
             return [L::zero(); 3];
         }
     }
     if occluders.tree {
-        let reach = |open: L::Mask| L::select(open, distance, -L::one());
-        world.bvh.traverse(o, l, reach(open), |k| {
-            open = test(k, open);
-            reach(open)
+        world.bvh.traverse(o, l, open.reach(), |k| {
+            open.test(world, k, &mut scratch.transparent);
+            open.reach()
         });
     }
+    let open = open.mask;
     let zero = L::zero();
     seen = each3(seen, |x| L::select(open, x, zero));
     if scratch.transparent.is_empty() || !open.any() {
@@ -96,6 +81,39 @@ pub fn occlusion<L: Lane>(
         }
     }
     seen
+}
+
+/// Shadow rays that nothing opaque has stopped yet.
+struct Open<L: Lane> {
+    mask: L::Mask,
+    source: u32,
+    part: L,
+    o: [L; 3],
+    l: [L; 3],
+    distance: L,
+}
+
+impl<L: Lane> Open<L> {
+    /// Tests primitive `k`, or puts it aside where it is transparent.
+    #[inline(always)]
+    fn test(&mut self, world: &World, k: u32, transparent: &mut Vec<u32>) {
+        match world.constant_transmission(k) {
+            Some([0.0, 0.0, 0.0]) => {
+                let own = Some(Own { here: L::Mask::splat(k == self.source), part: self.part });
+                let mut met = Blocked { distance: self.distance, blocked: L::Mask::splat(false) };
+                world.primitives[k as usize].crossings::<L, false>(world.tables(), self.o, self.l, own, &mut met);
+                self.mask = self.mask & !met.blocked;
+            }
+            Some([1.0, 1.0, 1.0]) => {}
+            _ => transparent.push(k),
+        }
+    }
+
+    /// How far each ray still has to be followed.
+    #[inline(always)]
+    fn reach(&self) -> L {
+        L::select(self.mask, self.distance, -L::one())
+    }
 }
 
 /// Whether anything lies between a point and the light.

@@ -35,8 +35,8 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
     // A missing root is NaN, which no comparison lets through.
     let [o, lo, d] = [ray.o, ray.o_lo, ray.d];
     let t = R::each([o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2]], |v| {
-        let v = v.map(|x| x * ring.scale);
-        ring_roots(ring, [v[0], v[1], v[2]], [v[3], v[4], v[5]], [v[6], v[7], v[8]])
+        let at = |i: usize| three(|k| v[i + k] * ring.scale);
+        ring_roots(ring, at(0), at(3), at(6))
     });
     let nearest = t.iter().skip(1).fold(t[0], |best, &x| R::select(x.abs().lt(best.abs()), x, best));
     for x in t {
@@ -68,12 +68,13 @@ pub(super) fn point<R: Real>(ring: &Ring, p: [R; 3]) -> Point<R> {
 }
 
 /// The up to four t at which a line meets the ring, in order; NaN for those that don't exist.
+#[inline(always)]
 fn ring_roots(ring: &Ring, o: [f64; 3], lo: [f64; 3], d: [f64; 3]) -> [f64; 4] {
     let none = [f64::NAN; 4];
     let dd = dot(d, d);
     let t0 = -(dot(o, d) / dd);
     // The point of the line nearest the centre, with what rounding left out.
-    let m: [f64; 3] = std::array::from_fn(|i| {
+    let m = three(|i| {
         let p = t0 * d[i];
         let e = f64::mul_add(t0, d[i], -p);
         let (s, se) = two_sum(o[i], p);
@@ -101,6 +102,7 @@ fn ring_roots(ring: &Ring, o: [f64; 3], lo: [f64; 3], d: [f64; 3]) -> [f64; 4] {
 }
 
 /// Coefficients, highest first, of (|p|² + R² − r²)² − 4R²(x² + z²) along m + τ·d.
+#[inline(always)]
 fn quartic_at(ring: &Ring, m: [f64; 3], d: [f64; 3]) -> [f64; 5] {
     let (r2, t2) = (ring.r * ring.r, ring.tube * ring.tube);
     let (a, b) = (dot(d, d), dot(m, d));
@@ -112,6 +114,7 @@ fn quartic_at(ring: &Ring, m: [f64; 3], d: [f64; 3]) -> [f64; 5] {
 }
 
 /// All roots of the quartic in −span..span, in order: between consecutive roots of the derivative there is at most one.
+#[inline(always)]
 fn isolate(q: &[f64; 5], span: f64, out: &mut [f64; 4]) -> usize {
     let cubic = [4.0 * q[0], 3.0 * q[1], 2.0 * q[2], q[3]];
     let quadratic = [3.0 * cubic[0], 2.0 * cubic[1], cubic[2]];
@@ -122,6 +125,7 @@ fn isolate(q: &[f64; 5], span: f64, out: &mut [f64; 4]) -> usize {
     roots_between(q, &turns3[..n3], span, out)
 }
 
+#[inline(always)]
 fn quadratic_roots([a, b, c]: [f64; 3], out: &mut [f64; 2]) -> usize {
     let h = b / 2.0;
     let disc = h.mul_add(h, -(a * c));
@@ -135,6 +139,7 @@ fn quadratic_roots([a, b, c]: [f64; 3], out: &mut [f64; 2]) -> usize {
 }
 
 /// Roots of the polynomial within −span..span, given where its derivative is zero, in order.
+#[inline(always)]
 fn roots_between(poly: &[f64], turns: &[f64], span: f64, out: &mut [f64]) -> usize {
     let mut n = 0;
     let (mut x0, mut y0) = (-span, horner(poly, -span).0);
@@ -153,6 +158,7 @@ fn roots_between(poly: &[f64], turns: &[f64], span: f64, out: &mut [f64]) -> usi
 }
 
 /// Newton's method that falls back to halving whenever a step leaves the bracket.
+#[inline(always)]
 fn bracketed_root(poly: &[f64], mut lo: f64, y_lo: f64, mut hi: f64) -> f64 {
     let mut x = 0.5 * (lo + hi);
     // 64 halvings alone reduce any bracket to neighbouring numbers; Newton usually ends after five steps.
@@ -177,15 +183,17 @@ fn bracketed_root(poly: &[f64], mut lo: f64, y_lo: f64, mut hi: f64) -> f64 {
 }
 
 /// Value and derivative.
+#[inline(always)]
 fn horner(poly: &[f64], x: f64) -> (f64, f64) {
     poly[1..].iter().fold((poly[0], 0.0), |(y, dy), &c| (y.mul_add(x, c), dy.mul_add(x, y)))
 }
 
 /// Three Newton steps on h(τ) = |(√(x² + z²) − R, y)| − r: distance to the tube, linear near the surface.
+#[inline(always)]
 fn polish(ring: &Ring, from: [f64; 3], d: [f64; 3], start: f64) -> f64 {
     let mut tau = start;
     for _ in 0..3 {
-        let p: [f64; 3] = std::array::from_fn(|i| tau.mul_add(d[i], from[i]));
+        let p = three(|i| tau.mul_add(d[i], from[i]));
         let rho = sqrt(p[0].mul_add(p[0], p[2] * p[2]));
         let w = rho - ring.r;
         let dist = sqrt(w.mul_add(w, p[1] * p[1]));

@@ -88,10 +88,17 @@ pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point
     let (beta, gamma) = (x.e[1] / x.det, x.e[2] / x.det);
     let v: [[R; 3]; 3] = each3(tri.v, splat3);
     // From the first corner along the edges: a coordinate that all corners share is then met exactly.
-    let p = axpy(gamma, minus(v[2], v[0]), axpy(beta, minus(v[1], v[0]), v[0]));
-    // Weights 6 each of their share, edges 1, products and sums 3, the addition that follows 1: of the corners' magnitudes.
-    let g = R::splat(12.0 * R::UNIT_ROUNDOFF);
-    let error = three(|i| g * (v[0][i].abs() + v[1][i].abs() + v[2][i].abs()));
+    let (along, across) = (minus(v[1], v[0]), minus(v[2], v[0]));
+    let p = axpy(gamma, across, axpy(beta, along, v[0]));
+    // An error of the weights moves the point within the plane, which does no harm. Across it: the edges 1, two sums 2, the
+    // addition that follows 1, and one to spare. A ray that starts here and runs into a neighbour finds its t from the
+    // corners' distances, with another six roundings of those.
+    let (u5, u6) = (R::splat(5.0 * R::UNIT_ROUNDOFF), R::splat(6.0 * R::UNIT_ROUNDOFF));
+    let (b, c) = (beta.abs(), gamma.abs());
+    let error = three(|i| {
+        let (e1, e2) = (along[i].abs(), across[i].abs());
+        u5 * b.mul_add(e1, c.mul_add(e2, v[0][i].abs())) + u6 * (e1 + e2)
+    });
     (Point { p, n: splat3(tri.n), error }, [beta, R::zero(), gamma])
 }
 
