@@ -95,6 +95,11 @@ fn nothing_lies_about() {
 }
 
 /// Words of the program, not of the language.
+const RUST: [&str; 16] = [
+    "Option", "Vec", "None", "Some", "Err", "Ok", "panicked", "unwrap", "usize", "u32", "str", "String", "Value",
+    "NaN", "inf", "pest",
+];
+
 #[test]
 fn no_message_speaks_rust() {
     for name in names("txt") {
@@ -102,11 +107,8 @@ fn no_message_speaks_rust() {
         // What the scene itself says doesn't count: excerpts stand after `|`.
         let own = text.lines().filter(|l| !l.contains(" | ") || l.trim_start().starts_with('|'));
         for line in own {
-            for word in [
-                "Option", "Vec", "None", "Some(", "Err(", "Ok(", "panick", "unwrap", "usize", "String", "Value::",
-                "NaN", "inf",
-            ] {
-                assert!(!line.contains(word), "{name}: `{word}` in: {line}");
+            for word in line.split(|c: char| !c.is_alphanumeric() && c != '_') {
+                assert!(!RUST.contains(&word), "{name}: `{word}` in: {line}");
             }
         }
     }
