@@ -85,10 +85,16 @@ fn print_one(d: &Diagnostic, sources: &Sources, look: Look) -> String {
     let mut text = String::with_capacity(drawn.len() + 1);
     for line in drawn.lines() {
         // The bar that leads from an excerpt to its notes leads nowhere without one.
-        if d.labels.is_empty() && anstream::adapter::strip_str(line).to_string().trim() == "|" {
+        let bare = anstream::adapter::strip_str(line).to_string();
+        if d.labels.is_empty() && bare.trim() == "|" {
             continue;
         }
-        text.push_str(line.trim_end());
+        // Where the head of a line is missing the place stands before the excerpt; a second arrow without one means nothing.
+        if bare.trim() == ":::" {
+            text.push_str(line.replace(":::", " |").trim_end());
+        } else {
+            text.push_str(line.trim_end());
+        }
         text.push('\n');
     }
     text
@@ -97,7 +103,7 @@ fn print_one(d: &Diagnostic, sources: &Sources, look: Look) -> String {
 /// What to write instead, unless the message says so already.
 fn help(d: &Diagnostic) -> Option<String> {
     let fix = d.fix.as_ref()?;
-    let quoted = format!("`{fix}`");
+    let quoted = format!("`{}`", fix.trim());
     let said = d.labels.iter().map(|l| &l.text).chain([&d.message]).chain(&d.notes).any(|t| t.contains(&quoted));
     let at_a_point = d.span().is_some_and(|s| s.start == s.end);
     match () {
@@ -167,7 +173,8 @@ impl Excerpt {
             self.cut = true;
         }
         let base = self.text.len();
-        self.text.push_str(&line[kept.clone()]);
+        // The end of a line on Windows isn't part of it.
+        self.text.push_str(&line[kept.clone()].replace('\r', " "));
         let place = |i: usize| base + (i - at).clamp(kept.start, kept.end) - kept.start;
         for (span, range) in self.spans.iter_mut().zip(ranges) {
             if here(range.start) {

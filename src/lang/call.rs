@@ -4,13 +4,15 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Call, Frame, Machine, word_name};
-use super::suggest::{did_you_mean, nearest};
+use super::suggest::{did_you_mean, nearest_property};
 use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
-use super::word::{Default, Run, described};
+use super::word::{Default, Run, Word, described};
 use crate::diag::Span;
 use ecow::EcoString;
 use std::sync::Arc;
 
+/// What a function without a name is called in call chains.
+pub const NAMELESS: &str = "function";
 /// Words with more parameters keep their arguments on the heap.
 const FEW: usize = 4;
 
@@ -22,17 +24,46 @@ impl<'p> Machine<'p> {
         let count = args.iter().map(|(i, _)| usize::from(*i) + 1).max().unwrap_or(most).max(word.params.len());
         if count <= FEW {
             let mut values = [const { Value::Unset }; FEW];
-            for (i, node) in args {
-                values[usize::from(*i)] = self.eval(node, frame)?;
-            }
+            self.arguments(&mut values, args, frame)?;
             self.run_word(id, &mut values[..count], span, args)
         } else {
             let mut values = vec![Value::Unset; count];
-            for (i, node) in args {
-                values[usize::from(*i)] = self.eval(node, frame)?;
-            }
+            self.arguments(&mut values, args, frame)?;
             self.run_word(id, &mut values, span, args)
         }
+    }
+
+    /// Evaluates arguments; mistakes in several of them are all reported.
+    fn arguments(&mut self, values: &mut [Value], args: &'p [(u16, Node)], frame: Frame<'_>) -> Result<(), Stop> {
+        let mut failed = false;
+        for (i, node) in args {
+            match self.attempt(node, frame)? {
+                Some(value) => values[usize::from(*i)] = value,
+                None => failed = true,
+            }
+        }
+        if failed { Err(Stop::Reported) } else { Ok(()) }
+    }
+
+    /// Reports every argument of a word that doesn't fit its parameter.
+    #[cold]
+    fn misfits(&mut self, word: &'static Word, values: &mut [Value], span: Span, args: &[(u16, Node)]) -> Stop {
+        let mut stops = Vec::new();
+        for (i, value) in values.iter().enumerate() {
+            let Some(param) = word.params.get(i).or(word.params.last()) else { continue };
+            let absent = matches!(value, Value::Unset | Value::None) && param.default != Default::Required;
+            if let (false, Err(fault)) = (absent, param.check(value, &self.build)) {
+                let meaning = format!("`{}` of `{}`: {}", param.name, word.name, param.doc);
+                stops.push(self.locate(fault.on(i).note_once(meaning), span, args));
+            }
+        }
+        let last = stops.pop().unwrap_or(Stop::Reported);
+        for stop in stops {
+            if let Stop::Error(d) = stop {
+                self.errors.push(*d);
+            }
+        }
+        last
     }
 
     /// Checks a word's arguments and runs it.
@@ -43,13 +74,19 @@ impl<'p> Machine<'p> {
             if y.is_finite() {
                 return Ok(Value::Number(y));
             }
-            return Err(self.locate(
-                Fault::new(format!("`{}` of {} isn't a number", word.name, number_text(*x))).on(0),
-                span,
-                args,
-            ));
+            let x_text = number_text(*x);
+            let fault = match word.name {
+                "sqrt" => Fault::new(format!("{x_text} has no square root")).note("numbers from 0 up have one"),
+                "ln" => Fault::new(format!("{x_text} has no logarithm")).note("numbers above 0 have one"),
+                name => {
+                    Fault::new(format!("`{name}` of {x_text} is too large")).note("the largest number is about 1.8e308")
+                }
+            };
+            return Err(self.locate(fault.on(0), span, args));
         }
-        word.check(values, &self.build).map_err(|f| self.locate(f.note_once(word.takes()), span, args))?;
+        if word.check(values, &self.build).is_err() {
+            return Err(self.misfits(word, values, span, args));
+        }
         self.here = span;
         let result = match &word.run {
             Run::Call(run) => run(self, values),
@@ -94,13 +131,13 @@ impl<'p> Machine<'p> {
         let Some(f) = program.functions.get(function.0 as usize) else { return Err(Stop::Reported) };
         self.step(span)?;
         self.nesting += f.depth as usize;
-        self.calls.push(Call { function, base, span, frame: None });
-        if self.calls.len() > self.limits.call_depth || self.nesting > self.limits.nesting {
-            let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len() - 1))
-                .label(format!("`{}` calls itself without an end?", f.name))
+        if self.calls.len() >= self.limits.call_depth || self.nesting > self.limits.nesting {
+            let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len()))
+                .label(format!("{} calls itself without an end?", called(&f.name)))
                 .note("a function that calls itself needs a case in which it doesn't");
             return Err(self.fail(fault, span));
         }
+        self.calls.push(Call { function, base, span, frame: None });
         self.stack.resize(base + f.slots as usize, Value::Unset);
         let frame = Frame { base, closure };
         for (i, p) in f.params.iter().enumerate() {
@@ -120,7 +157,7 @@ impl<'p> Machine<'p> {
         let function = self.eval(callee, frame)?;
         if !matches!(function, Value::Function(_) | Value::Builtin(_)) {
             let got = described(&function, &self.build);
-            let fault = Fault::new(format!("only functions can be called, this is {got}"));
+            let fault = Fault::new("only functions can be called").label(format!("this is {got}"));
             return Err(self.fail(fault, callee.span));
         }
         let mut values = Vec::with_capacity(args.len());
@@ -153,6 +190,13 @@ impl<'p> Machine<'p> {
             _ => return Err(self.fail(Fault::new("only functions can be called"), span)),
         };
         let name = word_name(function, program);
+        let the = called(&name);
+        let names: Vec<&str> = params.iter().map(|(n, _, _)| *n).collect();
+        let takes = match &names[..] {
+            [] => "it takes nothing".to_owned(),
+            _ => format!("it takes: {}", names.join(", ")),
+        };
+        let noun = if let Value::Builtin(_) = function { "property" } else { "parameter" };
         let mut placed = vec![Value::Unset; params.len()];
         let mut next = 0;
         for (k, (arg, value)) in values.into_iter().enumerate() {
@@ -166,32 +210,31 @@ impl<'p> Machine<'p> {
                 }
             };
             let Some(index) = index else {
-                let names: Vec<&str> = params.iter().map(|(n, _, _)| *n).collect();
-                let takes = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
                 let fault = match &arg {
-                    Some(arg) => Fault::new(format!("`{name}` has no parameter `{arg}`"))
-                        .label(did_you_mean(nearest(arg, names.iter().copied()))),
+                    Some(arg) => Fault::new(format!("{the} has no {noun} `{arg}`"))
+                        .label(did_you_mean(nearest_property(arg, names.iter().copied()))),
                     None => match params.get(next - 1) {
                         Some((p, _, _)) => {
-                            Fault::new(format!("`{p}` of `{name}` must be named")).label(format!("write `{p}: …`"))
+                            Fault::new(format!("`{p}` of {the} must be named")).label(format!("write `{p}: …`"))
                         }
-                        None => Fault::new(format!("`{name}` is given too many values")),
+                        None => Fault::new(format!("{the} has too many arguments")).label("this one is too much"),
                     },
                 };
-                return Err(self.fail(fault.note(format!("{name} takes: {takes}")), here));
+                return Err(self.fail(fault.note(takes), here));
             };
             if index >= placed.len() {
                 placed.resize(index + 1, Value::Unset);
             }
             if !matches!(placed[index], Value::Unset) {
-                return Err(self.fail(Fault::new(format!("`{}` of `{name}` is given twice", params[index].0)), here));
+                return Err(self
+                    .fail(Fault::new(format!("`{}` of {the} is given twice", names.get(index).unwrap_or(&""))), here));
             }
             placed[index] = value;
         }
         if let Some((missing, _, _)) =
             params.iter().zip(&placed).find(|((_, r, _), v)| *r && matches!(v, Value::Unset)).map(|(p, _)| p)
         {
-            return Err(self.fail(Fault::new(format!("`{name}` needs `{missing}`")), span));
+            return Err(self.fail(Fault::new(format!("{the} needs `{missing}`")).note(takes), span));
         }
         match function {
             Value::Builtin(id) => self.run_word(*id, &mut placed, span, &[]),
@@ -203,4 +246,9 @@ impl<'p> Machine<'p> {
             _ => Ok(Value::None),
         }
     }
+}
+
+/// A function in a message; one without a name is called by none.
+fn called(name: &str) -> String {
+    if name == NAMELESS { "this function".into() } else { format!("`{name}`") }
 }

@@ -31,16 +31,10 @@ impl<'p> Machine<'p> {
             Code::Binary(op, ab) => {
                 let a = self.eval(&ab.0, frame)?;
                 let b = self.eval(&ab.1, frame)?;
-                self.binary(*op, &a, &b, span)
+                self.binary(*op, &a, &b, span, ab)
             }
             Code::List(items) => self.list(items, span, frame),
-            Code::Block(nodes) => {
-                let mut value = Value::None;
-                for n in nodes {
-                    value = self.eval(n, frame)?;
-                }
-                Ok(value)
-            }
+            Code::Block(nodes) => self.block(nodes, frame),
             Code::If { arms, otherwise } => {
                 for (condition, body) in arms {
                     if self.condition(condition, frame)? {
@@ -80,7 +74,7 @@ impl<'p> Machine<'p> {
             Code::Index(ab) => {
                 let of = self.eval(&ab.0, frame)?;
                 let index = self.eval(&ab.1, frame)?;
-                self.index(&of, &index, ab.1.span)
+                self.index(&of, &index, ab)
             }
             Code::Field(of, name) => {
                 let value = self.eval(of, frame)?;
@@ -143,7 +137,7 @@ impl<'p> Machine<'p> {
     }
 
     #[inline]
-    fn binary(&mut self, op: Op, a: &Value, b: &Value, span: Span) -> Outcome {
+    fn binary(&mut self, op: Op, a: &Value, b: &Value, span: Span, ab: &'p (Node, Node)) -> Outcome {
         if let (Value::Number(x), Value::Number(y)) = (a, b) {
             let fast = match op {
                 Op::Add => x + y,
@@ -158,7 +152,43 @@ impl<'p> Machine<'p> {
             }
         }
         self.spend_on(a, b);
-        ops::binary(op, a, b, &mut self.build, span).map_err(|f| self.fail(f, span))
+        ops::binary(op, a, b, &mut self.build, span).map_err(|f| {
+            let span = if f.argument == Some(1) { ab.1.span } else { span };
+            self.fail(f, span)
+        })
+    }
+
+    /// The value of the last one. What is only added to the scene is independent of what comes after: a mistake in it
+    /// doesn't hide theirs.
+    fn block(&mut self, nodes: &'p [Node], frame: Frame<'_>) -> Outcome {
+        let mut value = Value::None;
+        let mut failed = false;
+        for n in nodes {
+            if let Code::Emit(_) = n.code {
+                failed |= self.attempt(n, frame)?.is_none();
+            } else {
+                value = self.eval(n, frame)?;
+            }
+        }
+        if failed { Err(Stop::Reported) } else { Ok(value) }
+    }
+
+    /// Evaluates what others don't depend on: a mistake is reported and the state is as before, so that others are found too.
+    /// `None` where there was one.
+    pub fn attempt(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Option<Value>, Stop> {
+        let before = (self.stack.len(), self.calls.len(), self.nesting, self.collected.len(), self.lists.len());
+        match self.eval(node, frame) {
+            Ok(value) => return Ok(Some(value)),
+            Err(Stop::Error(d)) if self.errors.len() <= self.limits.errors => self.errors.push(*d),
+            Err(Stop::Reported) => {}
+            Err(stop) => return Err(stop),
+        }
+        self.stack.truncate(before.0);
+        self.calls.truncate(before.1);
+        self.nesting = before.2;
+        self.collected.truncate(before.3);
+        self.lists.truncate(before.4);
+        Ok(None)
     }
 
     /// Arithmetic on long lists counts as so many steps.
@@ -176,7 +206,13 @@ impl<'p> Machine<'p> {
             Value::Bool(b) => Ok(b),
             other => {
                 let got = described(&other, &self.build);
-                Err(self.fail(Fault::new(format!("a condition must be true or false, got {got}")), node.span))
+                let fault = Fault::new(format!("a condition must be true or false, got {got}"));
+                let fault = match other {
+                    Value::Number(_) => fault.label("compare it with something, as in `n > 0`"),
+                    Value::Angle(_) => fault.label("compare it with something, as in `a > 0deg`"),
+                    _ => fault,
+                };
+                Err(self.fail(fault, node.span))
             }
         }
     }
@@ -297,10 +333,19 @@ impl<'p> Machine<'p> {
             }
             other => {
                 let got = described(other, &self.build);
-                let fault = Fault::new("a scene is made of shapes and lights").label(format!("this is {got}"));
+                let fault = Fault::new("a scene is made of shapes and lights");
+                let odd = |v: &&Value| !matches!(v, Value::Node(_) | Value::List(_));
+                let fault = match other {
+                    Value::List(items) if let Some(v) = items.iter().find(odd) => {
+                        fault.label(format!("this is a list with {} in it", described(v, &self.build)))
+                    }
+                    _ => fault.label(format!("this is {got}")),
+                };
                 Err(self.fail(
                     match other {
-                        Value::Function(_) | Value::Builtin(_) => fault.note("to call it, write `( )` after it"),
+                        Value::Function(_) | Value::Builtin(_) => {
+                            fault.note("to call a function, write `( )` after its name")
+                        }
                         Value::Material(_) | Value::Pattern(_) => {
                             fault.note("a material goes on a shape: `sphere(mat: …)`")
                         }
@@ -331,23 +376,29 @@ impl<'p> Machine<'p> {
         self.build.node(NodeKind::Group(children), material, name, place).map_err(|f| self.fail(f, span))
     }
 
-    fn index(&mut self, of: &Value, index: &Value, span: Span) -> Outcome {
+    fn index(&mut self, of: &Value, index: &Value, ab: &'p (Node, Node)) -> Outcome {
+        let span = ab.1.span;
         let Some(n) = of.length().filter(|_| matches!(of, Value::List(_) | Value::Vec3(_) | Value::Range(_))) else {
             let got = described(of, &self.build);
-            return Err(self.fail(Fault::new(format!("`[…]` takes an item of a list, got {got}")), span));
+            return Err(self.fail(Fault::new(format!("`[…]` takes an item of a list, got {got}")), ab.0.span));
         };
-        let Value::Number(i) = index else {
+        let Value::Number(i) = index.clone() else {
             let got = described(index, &self.build);
             return Err(self.fail(Fault::new(format!("an index must be a whole number, got {got}")), span));
         };
-        if i.fract() == 0.0 && *i >= 0.0 && (*i as u64) < n {
-            return Ok(of.item(*i as u64).unwrap_or(Value::None));
+        if i.fract() != 0.0 {
+            let got = described(index, &self.build);
+            return Err(self.fail(Fault::new(format!("an index must be a whole number, got {got}")), span));
+        }
+        if i >= 0.0 && (i as u64) < n {
+            return Ok(of.item(i as u64).unwrap_or(Value::None));
         }
         let i = index.show(40);
         let fault = match n {
             0 => Fault::new("the list is empty"),
             _ => {
-                Fault::new(format!("the list has no item {i}")).note(format!("its {n} items count from 0 to {}", n - 1))
+                let fault = Fault::new(format!("the list has no item {i}"));
+                fault.note(format!("its {n} items are numbered from 0 to {}", n - 1))
             }
         };
         Err(self.fail(fault, span))

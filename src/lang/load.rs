@@ -5,6 +5,7 @@ use super::ast::{Path as WrittenPath, Statement, StatementKind};
 use super::limits::Limits;
 use super::parse::parse;
 use super::request::{Input, Request};
+use super::suggest::nearest;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use std::collections::HashMap;
 use std::io;
@@ -83,6 +84,9 @@ impl Loader {
 
     /// Adds a text; where it isn't UTF-8, an error and what can be shown of it.
     fn add(&mut self, name: String, path: Option<PathBuf>, bytes: Vec<u8>) -> FileId {
+        // Byte-order marks: UTF-8's is no part of the text, UTF-16's tells that this is another encoding.
+        let utf16 = bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF");
+        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes);
         match String::from_utf8(bytes) {
             Ok(text) => self.sources.add(Source { name, path, text }),
             Err(e) => {
@@ -92,9 +96,13 @@ impl Loader {
                 let good = e.as_bytes().get(..at).unwrap_or(&[]);
                 let text = format!("{}\u{FFFD}", String::from_utf8_lossy(good));
                 let file = self.sources.add(Source { name, path, text });
+                let what = match utf16 {
+                    true => "this looks like UTF-16".to_owned(),
+                    false => format!("the byte {byte:#04x} is no part of a letter"),
+                };
                 self.errors.push(
                     Diagnostic::error("this file isn't UTF-8 text")
-                        .at(Span::new(file, at..at + 3), format!("the byte {byte:#04x} is no part of a letter"))
+                        .at(Span::new(file, at..at + 3), what)
                         .note("save it as UTF-8 in your editor"),
                 );
                 file
@@ -144,7 +152,11 @@ impl Loader {
         let index = match read(&full, self.limits.file_bytes) {
             Ok(bytes) => {
                 self.importing.push((full.clone(), name.clone()));
+                let before = self.errors.len();
                 let file = self.add(name, Some(full.clone()), bytes);
+                if let Some(d) = self.errors.get_mut(before) {
+                    *d = d.clone().at(path.span, "imported here");
+                }
                 let index = self.module(file);
                 self.importing.pop();
                 Some(index)
@@ -170,7 +182,11 @@ impl Loader {
         }
         self.files.push(path.clone());
         let full = path.canonicalize().map_err(|e| {
-            let d = Diagnostic::error(format!("can't read `{written}`: {}", reason(&e))).at(span, "");
+            let d = Diagnostic::error(format!("can't read `{written}`: {}", reason(&e)));
+            let d = match self.neighbour(&path, written) {
+                Some(best) => d.at(span, format!("did you mean `{best}`?")),
+                None => d.at(span, ""),
+            };
             d.note("a path starts at the folder of the file that names it")
         })?;
         if !self.allowed.iter().any(|root| full.starts_with(root)) {
@@ -179,6 +195,23 @@ impl Loader {
                 .note("a scene may read only files beneath its project's folder; `--allow-read DIR` allows another"));
         }
         Ok((full, shown))
+    }
+    /// The path as written with the name of a file of the same folder that is spelt almost alike.
+    fn neighbour(&self, path: &Path, written: &str) -> Option<String> {
+        let folder = path.parent()?.canonicalize().ok()?;
+        if !self.allowed.iter().any(|root| folder.starts_with(root)) {
+            return None;
+        }
+        let mut names: Vec<String> =
+            std::fs::read_dir(folder).ok()?.filter_map(|f| f.ok()?.file_name().into_string().ok()).collect();
+        names.sort(); // folders list their files in any order
+        let name = path.file_name()?.to_str()?;
+        // Most files of a folder end alike: what counts is the name before the ending.
+        let stem = |name: &str| Path::new(name).file_stem().and_then(|s| s.to_str()).unwrap_or("").to_owned();
+        let wanted = stem(name);
+        names.retain(|n| stem(n) == wanted || nearest(&wanted, [stem(n).as_str()]).is_some());
+        let best = nearest(name, names.iter().map(String::as_str))?;
+        Some(format!("{}{best}", written.strip_suffix(name)?))
     }
 }
 

@@ -123,7 +123,8 @@ impl<'p> Machine<'p> {
             }
             _ => {}
         }
-        self.errors.len() < self.limits.errors
+        // One more than is shown, so that it can be said that there are more.
+        self.errors.len() <= self.limits.errors
     }
 
     /// Gives a fault its place and the calls that led there.
@@ -151,23 +152,11 @@ impl<'p> Machine<'p> {
         self.locate(fault, span, &[])
     }
 
-    /// A trace of long recursions shows its innermost and its outermost calls.
+    /// The running calls with their arguments.
     fn trace_with_arguments(&self) -> Option<Arc<CallFrame>> {
-        const ENDS: usize = 8;
-        let n = self.calls.len();
-        let mut parent = None;
-        for (i, c) in self.calls.iter().enumerate() {
-            if n > 2 * ENDS + 1 && (ENDS..n - ENDS).contains(&i) {
-                if i == ENDS {
-                    let call = format!("{} more calls", n - 2 * ENDS).into();
-                    parent = Some(Arc::new(CallFrame { call, span: c.span, parent }));
-                }
-                continue;
-            }
-            let call = self.call_text(c).into();
-            parent = Some(Arc::new(CallFrame { call, span: c.span, parent }));
-        }
-        parent
+        let frame =
+            |parent, c: &Call| Some(Arc::new(CallFrame { call: self.call_text(c).into(), span: c.span, parent }));
+        self.calls.iter().fold(None, frame)
     }
 
     /// `bead(u: 0.25, i: 60)`

@@ -157,10 +157,14 @@ type SetNode = (String, String, Span, Result<Node, Diagnostic>);
 fn set_nodes(request: &Request, sources: &mut Sources, resolver: &mut Resolver) -> Vec<SetNode> {
     let mut out: Vec<SetNode> = Vec::new();
     for (name, raw) in &request.set {
-        let file = sources.add(Source { name: format!("--set {name}={raw}"), path: None, text: raw.clone() });
-        let span = Span::new(file, 0..raw.len());
+        let text = format!("{name}={raw}");
+        let value = name.len() + 1..text.len();
+        // The name is blanked, not cut off, so that places are those in the whole.
+        let blanked = format!("{:1$}{raw}", "", value.start);
+        let file = sources.add(Source { name: "--set".into(), path: None, text });
+        let span = Span::new(file, value);
         let before = resolver.errors.len();
-        let node = parse::parse_expression(file, raw).map(|e| resolver.lone_expression(&e));
+        let node = parse::parse_expression(file, &blanked).map(|e| resolver.lone_expression(&e));
         // An unknown word is a mistake only where the parameter doesn't take any text.
         let node = match resolver.errors.drain(before..).next() {
             Some(d) => Err(d),
@@ -188,8 +192,9 @@ fn unknown_params(loader: &Loader, nodes: &[SetNode]) -> Diagnostics {
     unknown
         .map(|(name, _, span, _)| {
             let best = suggest::nearest(name, declared.iter().copied());
-            let d = Diagnostic::error(format!("the scene has no parameter `{name}`"))
-                .at(*span, suggest::did_you_mean(best));
+            let here = Span { start: 0, end: name.len() as u32, ..*span };
+            let d =
+                Diagnostic::error(format!("the scene has no parameter `{name}`")).at(here, suggest::did_you_mean(best));
             match &declared[..] {
                 [] => d.note("it has no parameters"),
                 some => d.note(format!("its parameters: {}", some.join(", "))),
@@ -202,10 +207,9 @@ fn unknown_params(loader: &Loader, nodes: &[SetNode]) -> Diagnostics {
 fn in_order(mut errors: Diagnostics, most: usize) -> Diagnostics {
     errors.sort_by_key(|d| d.span().map_or((FileId(0), 0), |s| (s.file, s.start)));
     errors.dedup_by(|a, b| a.message == b.message && a.span() == b.span());
-    let more = errors.len().saturating_sub(most);
-    errors.truncate(most);
-    if more > 0 {
-        errors.push(Diagnostic::error(format!("and {more} further errors")));
+    if errors.len() > most {
+        errors.truncate(most);
+        errors.push(Diagnostic::error(format!("there are more mistakes; these are the first {most}")));
     }
     errors
 }

@@ -47,10 +47,12 @@ pub fn numbers(op: Op, a: f64, b: f64) -> Result<f64, Box<Fault>> {
         Op::Add => a + b,
         Op::Subtract => a - b,
         Op::Multiply => a * b,
-        Op::Divide if b == 0.0 => return Err(Fault::new("division by 0").label("this is 0 here")),
+        Op::Divide if b == 0.0 => return Err(Fault::new("division by 0").label("this is 0 here").on(1)),
         Op::Divide => a / b,
         // The sign of the result is that of `b`, so that a pattern goes on below 0.
-        Op::Remainder if b == 0.0 => return Err(Fault::new("remainder of a division by 0")),
+        Op::Remainder if b == 0.0 => {
+            return Err(Fault::new("remainder of a division by 0").label("this is 0 here").on(1));
+        }
         Op::Remainder => a - b * (a / b).floor(),
         Op::Power => fun::pow(a, b),
         _ => f64::NAN,
@@ -107,11 +109,16 @@ fn range(op: Op, a: &Value, b: &Value, build: &Build) -> Made {
         (Value::Number(_), Value::Number(_)) => {
             Err(Fault::new("the ends of a range lie within 9007199254740992, the last number that can be counted to"))
         }
-        _ => Err(Fault::new(format!(
-            "a range goes from a number to a number, got {} and {}",
-            kind_of(a, build),
-            kind_of(b, build)
-        ))),
+        _ => {
+            let (from, to) = (kind_of(a, build), kind_of(b, build));
+            let fault = Fault::new(format!("a range goes from a number to a number, got {from} and {to}"));
+            Err(match (a, b) {
+                (Value::Angle(_), _) | (_, Value::Angle(_)) => {
+                    fault.note("count with numbers and multiply: `for i in 0..9 { … i * 10deg … }`")
+                }
+                _ => fault,
+            })
+        }
     }
 }
 
@@ -203,8 +210,15 @@ fn unfit(op: Op, a: &Value, b: &Value, build: &Build) -> Box<Fault> {
         (Value::Text(_), _) | (_, Value::Text(_)) if op == Op::Add => {
             fault.note("texts are put together with `\"{a} and {b}\"`")
         }
-        (Value::Vec3(_) | Value::List(_), Value::Number(_)) | (Value::Number(_), Value::Vec3(_) | Value::List(_)) => {
-            fault.note("a number is added to a list item by item: write `[1, 1, 1]`")
+        (Value::Vec3(_) | Value::List(_), Value::Number(n)) | (Value::Number(n), Value::Vec3(_) | Value::List(_))
+            if matches!(op, Op::Add | Op::Subtract) =>
+        {
+            fault.note(format!("lists are added item by item: write `[{0}, {0}, {0}]`", number_text(*n)))
+        }
+        (Value::Node(_), Value::Node(_)) => fault.note("shapes are put together in a `group { … }`"),
+        (Value::Node(_), Value::Vec3(_)) if op == Op::Add => fault.note("to move a shape write `|> move([x, y, z])`"),
+        (Value::Node(_), Value::Number(_)) | (Value::Number(_), Value::Node(_)) if op == Op::Multiply => {
+            fault.note("to enlarge a shape write `|> scale(2)`")
         }
         _ => fault,
     }

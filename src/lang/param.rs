@@ -1,10 +1,11 @@
 //! `param`: a value that the command line may set.
 
-use super::code::{Node, ParamCode};
+use super::ast::Op;
+use super::code::{Code, Node, ParamCode};
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Frame, Machine};
 use super::request::{Param, ParamKind};
-use super::suggest::join_or;
+use super::suggest::{join_or, nearest};
 use super::value::{Value, number_text};
 use super::word::described;
 use crate::diag::Span;
@@ -89,18 +90,39 @@ impl<'p> Machine<'p> {
     }
 
     fn param_range(&mut self, default: &Value, node: &'p Node, frame: Frame<'_>) -> Result<(f64, f64), Stop> {
-        let fault = match (default, self.eval(node, frame)?) {
-            (Value::Number(_) | Value::Angle(_), Value::Range(r)) if r.from <= r.to => {
-                if r.inclusive {
-                    return Ok((r.from, r.to));
-                }
-                Fault::new("a parameter's range includes its end").label("write `..=`")
+        let angle = matches!(default, Value::Angle(_));
+        let example = if angle { "as in `in 0deg..=90deg`" } else { "as in `in 1..=10`" };
+        let fault = match self.param_ends(node, frame)? {
+            _ if !angle && !matches!(default, Value::Number(_)) => {
+                Fault::new("only a number or an angle has a range").note("for texts write `of [\"a\", \"b\"]`")
             }
-            (Value::Number(_) | Value::Angle(_), Value::Range(_)) => Fault::new("this range is empty"),
-            (Value::Number(_) | Value::Angle(_), _) => Fault::new("`in` takes a range").note("as in `in 1..=10`"),
-            _ => Fault::new("only a number or an angle has a range").note("for texts write `of [\"a\", \"b\"]`"),
+            Some((_, _, false)) => Fault::new("a parameter's range includes its end").label("write `..=`"),
+            Some((Value::Number(a), Value::Number(b), _)) if !angle && a <= b => return Ok((a, b)),
+            Some((Value::Angle(a), Value::Angle(b), _)) if angle && a <= b => return Ok((a, b)),
+            Some((Value::Number(_), Value::Number(_), _)) if angle => {
+                Fault::new("the range of an angle goes from an angle to an angle").note(example)
+            }
+            Some((Value::Angle(_), Value::Angle(_), _)) if !angle => {
+                Fault::new("the range of a number goes from a number to a number").note(example)
+            }
+            Some((Value::Number(a), Value::Number(b), _)) | Some((Value::Angle(a), Value::Angle(b), _)) if a > b => {
+                Fault::new("this range is empty").label("its end is below its start")
+            }
+            _ => Fault::new("`in` takes a range").note(example),
         };
         Err(self.fail(fault, node.span))
+    }
+
+    /// The ends of a range and whether it includes the last; as a value, a range has no unit.
+    fn param_ends(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Option<(Value, Value, bool)>, Stop> {
+        if let Code::Binary(op @ (Op::Range | Op::RangeInclusive), ends) = &node.code {
+            let (a, b) = (self.eval(&ends.0, frame)?, self.eval(&ends.1, frame)?);
+            return Ok(Some((a, b, *op == Op::RangeInclusive)));
+        }
+        Ok(match self.eval(node, frame)? {
+            Value::Range(r) => Some((Value::Number(r.from), Value::Number(r.to), r.inclusive)),
+            _ => None,
+        })
     }
 
     fn fits(&mut self, kind: &ParamKind, p: &ParamCode, value: &Value, span: Span) -> Result<(), Stop> {
@@ -110,7 +132,11 @@ impl<'p> Machine<'p> {
             (ParamKind::Number { range, whole, unit }, Value::Number(n) | Value::Angle(n)) => {
                 if matches!(value, Value::Angle(_)) != (*unit == "deg") {
                     let expected = if *unit == "deg" { "an angle" } else { "a number" };
-                    Fault::new(format!("parameter `{name}` is {expected}, got {got}"))
+                    let fault = Fault::new(format!("parameter `{name}` must be {expected}, got {got}"));
+                    match value {
+                        Value::Number(n) => fault.label(format!("write `{}deg`", number_text(*n))),
+                        _ => fault.label("a number has no unit"),
+                    }
                 } else if let Some((lo, hi)) = range
                     && !(*lo..=*hi).contains(n)
                 {
@@ -127,20 +153,22 @@ impl<'p> Machine<'p> {
             }
             (ParamKind::Choice(words), Value::Text(t)) if words.iter().any(|w| w == t.as_str()) => return Ok(()),
             (ParamKind::Choice(words), _) => {
+                let best = if let Value::Text(t) = value { nearest(t, words.iter().map(String::as_str)) } else { None };
+                let label = best.map_or(String::new(), |b| format!("did you mean \"{b}\"?"));
                 let words: Vec<String> = words.iter().map(|w| format!("\"{w}\"")).collect();
-                Fault::new(format!("parameter `{name}` must be {}, got {got}", join_or(&words)))
+                Fault::new(format!("parameter `{name}` must be {}, got {got}", join_or(&words))).label(label)
             }
             (ParamKind::Switch, Value::Bool(_))
             | (ParamKind::Color, Value::Color(_))
             | (ParamKind::Text, Value::Text(_))
             | (ParamKind::Other, _) => return Ok(()),
             (ParamKind::Number { unit: "deg", .. }, _) => {
-                Fault::new(format!("parameter `{name}` is an angle, got {got}"))
+                Fault::new(format!("parameter `{name}` must be an angle, got {got}"))
             }
-            (ParamKind::Number { .. }, _) => Fault::new(format!("parameter `{name}` is a number, got {got}")),
-            (ParamKind::Switch, _) => Fault::new(format!("parameter `{name}` is true or false, got {got}")),
-            (ParamKind::Color, _) => Fault::new(format!("parameter `{name}` is a color, got {got}")),
-            (ParamKind::Text, _) => Fault::new(format!("parameter `{name}` is a text, got {got}")),
+            (ParamKind::Number { .. }, _) => Fault::new(format!("parameter `{name}` must be a number, got {got}")),
+            (ParamKind::Switch, _) => Fault::new(format!("parameter `{name}` must be `true` or `false`, got {got}")),
+            (ParamKind::Color, _) => Fault::new(format!("parameter `{name}` must be a color, got {got}")),
+            (ParamKind::Text, _) => Fault::new(format!("parameter `{name}` must be a text, got {got}")),
         };
         let fault = if span == p.default.span { fault } else { fault.and_at(p.name_span, "declared here") };
         Err(self.fail(fault, span))

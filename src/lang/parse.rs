@@ -33,20 +33,54 @@ pub fn parse(file: FileId, text: &str) -> (Vec<Statement>, Diagnostics) {
             statements.push(broken());
             continue;
         }
-        let mut builder = Builder { file, offset: piece.range.start };
-        let parsed = match Grammar::parse(Rule::one_statement, source) {
-            Ok(mut pairs) => pairs.next().ok_or_else(|| Diagnostic::error("an empty statement").at(span, "")),
-            Err(e) => Err(syntax::explain(&e, file, source, piece.range.start)),
-        };
-        match parsed.and_then(|pair| builder.statement(pair)) {
-            Ok(s) => statements.push(s),
-            Err(e) => {
-                errors.push(e);
-                statements.push(broken());
-            }
+        match recover(file, source, piece.range.start, &mut errors) {
+            Some(s) => statements.push(s),
+            None => statements.push(broken()),
         }
     }
     (statements, errors)
+}
+
+/// Most bytes that are parsed again and again to find further mistakes in one statement.
+const RECOVERY_BYTES: usize = 4 << 20;
+
+/// Parses an outermost statement. One that is wrong within a block is left out of the block, and the rest tried again,
+/// so that every broken statement of a block is reported.
+fn recover(file: FileId, source: &str, offset: usize, errors: &mut Diagnostics) -> Option<Statement> {
+    let mut text = std::borrow::Cow::Borrowed(source);
+    let mut holes: Vec<Hole> = Vec::new();
+    let mut spent = 0;
+    loop {
+        let mut builder = Builder { file, offset, holes: &holes };
+        let parsed = match Grammar::parse(Rule::one_statement, &text) {
+            Ok(mut pairs) => pairs.next().ok_or_else(|| Diagnostic::error("an empty statement")),
+            Err(e) => Err(syntax::explain(&e, file, &text, offset)),
+        };
+        let error = match parsed.and_then(|pair| builder.statement(pair)) {
+            Ok(statement) => return Some(statement),
+            Err(error) => error,
+        };
+        let at = error.span().map(|s| (s.start as usize).saturating_sub(offset));
+        errors.push(error);
+        spent += text.len();
+        // The braces of an import hold names, not statements.
+        let again = spent <= RECOVERY_BYTES && !source.starts_with("import");
+        let part = at.filter(|_| again).and_then(|at| scan::block_statement(&text, at))?;
+        if part.is_empty() || text[part.clone()].trim().is_empty() {
+            return None;
+        }
+        holes.push(Hole { at: offset + part.start, name: bound_name(&text[part.clone()]) });
+        holes.sort_by_key(|h| h.at);
+        text.to_mut().replace_range(part.clone(), &" ".repeat(part.len()));
+    }
+}
+
+/// A broken statement that was left out of its block.
+struct Hole {
+    /// Where in the file it starts.
+    at: usize,
+    /// What it was to bind.
+    name: Option<EcoString>,
 }
 
 /// Parses a single expression: a value of `--set`.
@@ -56,6 +90,9 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Diagnostic> {
         return Err(e);
     }
     let all = Span::new(file, 0..text.len());
+    if prepared.statements.is_empty() {
+        return Err(Diagnostic::error("a value is missing").at(Span { start: all.end, ..all }, "write one here"));
+    }
     let [piece] = &prepared.statements[..] else {
         return Err(Diagnostic::error("expected one value").at(all, ""));
     };
@@ -63,7 +100,7 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Diagnostic> {
     let mut pairs = Grammar::parse(Rule::one_expression, source)
         .map_err(|e| syntax::explain(&e, file, source, piece.range.start))?;
     let pair = pairs.next().ok_or_else(|| Diagnostic::error("expected a value").at(all, ""))?;
-    Builder { file, offset: piece.range.start }.expr(pair)
+    Builder { file, offset: piece.range.start, holes: &[] }.expr(pair)
 }
 
 fn check_edition(source: &str, span: Span, first: bool) -> Option<Diagnostic> {
@@ -95,12 +132,14 @@ fn bound_name(source: &str) -> Option<EcoString> {
 
 type Parsed<T> = Result<T, Diagnostic>;
 
-struct Builder {
+struct Builder<'a> {
     file: FileId,
     offset: usize,
+    /// In the order of the text.
+    holes: &'a [Hole],
 }
 
-impl Builder {
+impl Builder<'_> {
     fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let s = pair.as_span();
         Span::new(self.file, self.offset + s.start()..self.offset + s.end())
@@ -210,7 +249,15 @@ impl Builder {
 
     fn block(&mut self, pair: Pair<'_, Rule>) -> Parsed<Block> {
         let span = self.span(&pair);
-        let statements = Parts::of(pair).map(|p| self.statement(p)).collect::<Parsed<_>>()?;
+        let mut statements = Parts::of(pair).map(|p| self.statement(p)).collect::<Parsed<Vec<_>>>()?;
+        for hole in self.holes.iter().filter(|h| span.range().contains(&h.at)) {
+            let within = |s: &Statement| s.span.range().contains(&hole.at);
+            if !statements.iter().any(within) {
+                let at = statements.partition_point(|s| s.span.start as usize <= hole.at);
+                let kind = StatementKind::Broken { name: hole.name.clone() };
+                statements.insert(at, Statement { kind, span: Span::new(self.file, hole.at..hole.at) });
+            }
+        }
         Ok(Block { statements, span })
     }
 

@@ -248,7 +248,18 @@ impl Param {
             (Ty::Point | Ty::Direction, Value::List(items)) if items.len() == 2 => {
                 fault.label("the third number is missing")
             }
+            (Ty::Point | Ty::Direction, Value::List(items)) if items.len() == 3 => {
+                let odd = items.iter().find(|v| !matches!(v, Value::Number(_))).unwrap_or(value);
+                fault.label(format!("{} is in it", described(odd, build)))
+            }
             (Ty::Text | Ty::Choice(_), Value::Number(_)) => fault.label("texts stand in quotes"),
+            (Ty::Color | Ty::ColorPaint | Ty::Paint, Value::Text(_)) => {
+                fault.label("a color's name stands without quotes")
+            }
+            (_, Value::Builtin(id)) => {
+                fault.label(format!("to call it, write `{}(…)`", super::catalog::word(*id).name))
+            }
+            (_, Value::Function(_)) => fault.label("to call a function, write `( )` after its name"),
             _ => fault,
         }
     }

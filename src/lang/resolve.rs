@@ -1,10 +1,11 @@
 //! From syntax tree to program: finds what every name means, and reports every one that means nothing.
 
 use super::ast::*;
+use super::call::NAMELESS;
 use super::catalog;
 use super::code::*;
 use super::scope::{Access, At, Binding, Kind, Level, Scopes};
-use super::suggest::{did_you_mean, nearest};
+use super::suggest::{did_you_mean, nearest, nearest_word};
 use super::value::{BuiltinId, FunctionId, Value};
 use super::word::{self, Run};
 use crate::diag::{Diagnostic, Diagnostics, Span};
@@ -52,12 +53,17 @@ pub struct Resolver {
     /// Globals that the current outermost statement binds or changes.
     binds: Vec<u32>,
     main: bool,
+    /// The name whose value is being resolved.
+    binding: Option<Ident>,
+    /// Names of this file whose block has ended.
+    ended: Vec<(EcoString, Span)>,
 }
 
 impl Resolver {
     /// Adds a file. `imports` has one entry an `import` statement: the module's index, or `None` where it couldn't be read.
     pub fn file(&mut self, statements: &[Statement], imports: &[Option<usize>], main: bool) {
         self.scopes = Scopes::default();
+        self.ended.clear();
         self.main = main;
         self.scopes.levels.push(Level::default());
         self.scopes.top().enter();
@@ -208,7 +214,7 @@ impl Resolver {
         let node = match &s.kind {
             StatementKind::Broken { .. } | StatementKind::Import { .. } => return None,
             StatementKind::Let { name, value, .. } | StatementKind::Var { name, value } => {
-                let value = self.expr(value, Mode::Value);
+                let value = self.bound_value(name, value);
                 self.set_global(name, value, s.span)?
             }
             StatementKind::Param(p) => {
@@ -282,25 +288,47 @@ impl Resolver {
         level.captures.into()
     }
 
+    /// The value of a `let` or `var`.
+    fn bound_value(&mut self, name: &Ident, value: &Expr) -> Node {
+        let outer = self.binding.replace(name.clone());
+        let value = self.expr(value, Mode::Value);
+        self.binding = outer;
+        value
+    }
+
+    /// Ends a block; what it bound is remembered, to explain why it isn't there any more.
+    fn leave(&mut self, mark: u32) {
+        if let Some(block) = self.scopes.top().blocks.last() {
+            self.ended.extend(block.iter().map(|b| (b.name.clone(), b.span)));
+        }
+        self.scopes.top().leave(mark);
+    }
+
     fn block(&mut self, block: &Block, mode: Mode) -> Node {
         let mark = self.scopes.top().enter();
         let last = block.statements.len().wrapping_sub(1);
         let mut nodes = Vec::with_capacity(block.statements.len());
+        let mut before = self.errors.len();
         for (i, s) in block.statements.iter().enumerate() {
+            before = self.errors.len();
             let mode = if i == last || mode == Mode::Scene { mode } else { Mode::Discard };
             nodes.push(self.statement(s, mode));
         }
-        self.scopes.top().leave(mark);
-        if mode == Mode::Value && !matches!(block.statements.last().map(|s| &s.kind), Some(StatementKind::Expr(_))) {
+        self.leave(mark);
+        let last = block.statements.last().map(|s| &s.kind);
+        if mode == Mode::Value && !matches!(last, Some(StatementKind::Expr(_) | StatementKind::Broken { .. })) {
             let (span, text) = match block.statements.last() {
                 Some(s) => (s.span, "expected an expression after this"),
                 None => (block.span, "it is empty"),
             };
-            self.errors.push(
-                Diagnostic::error("this block has no value")
-                    .at(span, text)
-                    .note("the last line of a block is its value"),
-            );
+            // Where the last line is wrong itself it may have been meant as the value.
+            if self.errors.len() == before {
+                self.errors.push(
+                    Diagnostic::error("this block has no value")
+                        .at(span, text)
+                        .note("the last line of a block is its value"),
+                );
+            }
             nodes.push(Node { code: Code::Failed, span: block.span });
         }
         match (nodes.len(), nodes.pop()) {
@@ -319,11 +347,11 @@ impl Resolver {
                 if *export {
                     self.only_at_top("export", s.span);
                 }
-                let value = self.expr(value, Mode::Value);
+                let value = self.bound_value(name, value);
                 Code::SetLocal(self.bind_local(name, Kind::Let), Box::new(value))
             }
             StatementKind::Var { name, value } => {
-                let value = self.expr(value, Mode::Value);
+                let value = self.bound_value(name, value);
                 Code::SetLocal(self.bind_local(name, Kind::Var), Box::new(value))
             }
             StatementKind::Fn { name, function, export } => {
@@ -340,15 +368,36 @@ impl Resolver {
                 let condition = self.expr(condition, Mode::Value);
                 Code::While(Box::new((condition, self.block(body, Mode::Discard))))
             }
-            StatementKind::Import { .. } => self.only_at_top("import", s.span),
-            StatementKind::Param(_) => self.only_at_top("param", s.span),
-            StatementKind::Broken { .. } => Code::Failed,
+            StatementKind::Import { names, .. } => {
+                match names {
+                    ImportNames::Module(name) => self.bind(name, Kind::Broken, At::Local(0), true),
+                    ImportNames::Some(names) => {
+                        names.iter().for_each(|(_, here)| self.bind(here, Kind::Broken, At::Local(0), true));
+                    }
+                }
+                self.only_at_top("import", s.span)
+            }
+            StatementKind::Param(p) => {
+                self.bind(&p.name, Kind::Broken, At::Local(0), true);
+                self.only_at_top("param", s.span)
+            }
+            StatementKind::Broken { name } => {
+                if let Some(name) = name {
+                    let ident = Ident { name: name.clone(), span: s.span };
+                    self.bind(&ident, Kind::Broken, At::Local(0), true);
+                }
+                Code::Failed
+            }
         };
         Node { code, span: s.span }
     }
 
     fn only_at_top(&mut self, word: &str, span: Span) -> Code {
-        self.errors.push(Diagnostic::error(format!("`{word}` belongs at the top level of the file")).at(span, ""));
+        let here = Span { end: span.start + word.len() as u32, ..span };
+        self.errors.push(
+            Diagnostic::error(format!("`{word}` belongs at the top level of the file"))
+                .at(here, "not within a block or function"),
+        );
         Code::Failed
     }
 
@@ -358,7 +407,7 @@ impl Resolver {
             let best = nearest(&name.name, self.scopes.names()).map(str::to_owned);
             let d = Diagnostic::error(format!("there is no variable `{}`", name.name));
             self.errors.push(match best {
-                Some(b) => d.at(name.span, did_you_mean(Some(&b))),
+                Some(b) => d.at(name.span, did_you_mean(Some(&b))).fix(b),
                 None => d.at(name.span, "").note(format!("to make one, write `var {} = …`", name.name)),
             });
             return Code::Failed;
@@ -375,10 +424,12 @@ impl Resolver {
             };
             let d =
                 Diagnostic::error(format!("`{}` can't be changed", name.name)).at(name.span, "").at(binding.span, how);
-            self.errors.push(if binding.kind == Kind::Let {
-                d.note(format!("for a value that changes write `var {} = …`", name.name))
-            } else {
-                d
+            self.errors.push(match binding.kind {
+                Kind::Let => d.note(format!("for a value that changes write `var {} = …`", name.name)),
+                Kind::Parameter | Kind::Loop => {
+                    d.note(format!("for a value that changes write `var changed = {}`", name.name))
+                }
+                _ => d,
             });
             return Code::Failed;
         }
@@ -454,7 +505,7 @@ impl Resolver {
             ExprKind::Name(name) => self.name(&Ident { name: name.clone(), span: e.span }),
             ExprKind::List(items) => self.list(items),
             ExprKind::Lambda(f) => {
-                let id = self.reserve(&"function".into(), f);
+                let id = self.reserve(&NAMELESS.into(), f);
                 let captures = self.function(f, id, None);
                 Code::Closure(id, captures)
             }
@@ -466,7 +517,7 @@ impl Resolver {
             ExprKind::Binary { op, a, b, .. } => Code::Binary(*op, self.pair(a, b)),
             ExprKind::Index { of, index } => Code::Index(self.pair(of, index)),
             ExprKind::Field { of, field } => self.field(of, field),
-            ExprKind::Call { callee, args } => self.call(callee, args, e.span, mode),
+            ExprKind::Call { callee, args } => self.call(callee, args, mode),
             ExprKind::If { .. } | ExprKind::For(_) | ExprKind::Block(_) => self.expr(e, mode).code,
         }
     }
@@ -510,7 +561,8 @@ impl Resolver {
         if mode == Mode::Value && otherwise.is_none() {
             self.errors.push(
                 Diagnostic::error("this `if` has no value when its condition is false")
-                    .at(span, "an `else { … }` is missing"),
+                    .at(Span { end: span.start + 2, ..span }, "an `else { … }` is missing")
+                    .note("as in `if a > 0 { a } else { 0 }`"),
             );
         }
         Code::If { arms, otherwise }
@@ -518,19 +570,24 @@ impl Resolver {
 
     fn for_(&mut self, f: &For, span: Span, mode: Mode) -> Code {
         if mode == Mode::Value {
+            let here = Span { end: span.start + 3, ..span };
             self.errors.push(
                 Diagnostic::error("a `for` has no value here")
-                    .at(span, "")
+                    .at(here, "its values would be lost")
                     .note("write `[for … { … }]` for a list, or `group { for … { … } }` for shapes"),
             );
         }
+        let valueless = mode == Mode::Value;
         let mode = if mode == Mode::Value { Mode::Discard } else { mode };
         let over = self.expr(&f.over, Mode::Value);
         let mark = self.scopes.top().enter();
         let slot = self.bind_local(&f.name, Kind::Loop);
         let guard = f.guard.as_ref().map(|g| self.expr(g, Mode::Value));
         let body = self.block(&f.body, mode);
-        self.scopes.top().leave(mark);
+        self.leave(mark);
+        if valueless {
+            return Code::Failed;
+        }
         Code::For(Box::new(ForCode { slot, over, guard, body }))
     }
 
@@ -594,13 +651,23 @@ impl Resolver {
         if let Some(id) = catalog::find(&ident.name) {
             return self.word_value(id, ident.span);
         }
-        let d = Diagnostic::error(format!("`{}` is used before it has a value", ident.name));
         let d = match later {
-            Some(later) => d.at(ident.span, "").at(later, "it gets one here").note("move that line up"),
-            None => self.unknown(ident),
+            Some(later) if self.binding.as_ref().is_some_and(|b| b.span == later) => self.of_itself(ident, later),
+            Some(later) => Diagnostic::error(format!("`{}` is used before it has a value", ident.name))
+                .at(ident.span, "")
+                .at(later, "it gets one here")
+                .note("move that line up"),
+            None => self.unknown(ident, false),
         };
         self.errors.push(d);
         Code::Failed
+    }
+
+    fn of_itself(&self, ident: &Ident, bound: Span) -> Diagnostic {
+        Diagnostic::error(format!("the value of `{0}` is made of `{0}` itself", ident.name))
+            .at(ident.span, "it has no value yet")
+            .at(bound, "it is bound here")
+            .note("a line that ends with an operator goes on in the next one")
     }
 
     /// A word that stands without a call.
@@ -611,29 +678,45 @@ impl Resolver {
             Run::Syntax => {
                 self.errors.push(
                     Diagnostic::error(format!("`{}` must be called", word.name))
-                        .at(span, "")
+                        .at(span, format!("write `{}(…)`", word.name))
                         .note(format!("as in `{}`", word.example.lines().next().unwrap_or(""))),
                 );
                 Code::Failed
             }
             _ if word.kind == word::Kind::Setting && word.name != "grid" => {
-                self.errors.push(Diagnostic::error(format!("`{}` must be called", word.name)).at(span, word.takes()));
+                self.errors.push(
+                    Diagnostic::error(format!("`{}` must be called", word.name))
+                        .at(span, format!("write `{}(…)`", word.name))
+                        .note(word.takes()),
+                );
                 Code::Failed
             }
             _ => Code::Const(Value::Builtin(id)),
         }
     }
 
-    fn unknown(&mut self, ident: &Ident) -> Diagnostic {
-        let words = catalog::catalog().iter().map(|w| w.name);
-        let best = nearest(&ident.name, self.scopes.names().chain(words));
-        let d = Diagnostic::error(format!("`{}` is unknown", ident.name)).at(ident.span, did_you_mean(best));
-        match best {
-            Some(best) => {
-                let best = best.to_owned();
-                d.fix(best)
+    fn unknown(&self, ident: &Ident, called: bool) -> Diagnostic {
+        let name = &ident.name;
+        let d = Diagnostic::error(format!("`{name}` is unknown"));
+        if let Some(bound) = self.binding.as_ref().filter(|b| b.name == *name) {
+            return self.of_itself(ident, bound.span);
+        }
+        if let Some((_, bound)) = self.ended.iter().rev().find(|(n, _)| n == name) {
+            return Diagnostic::error(format!("`{name}` is unknown here"))
+                .at(ident.span, "outside the block that binds it")
+                .at(*bound, "it is bound here, for this block alone")
+                .note("bind it before the block");
+        }
+        let words = || catalog::catalog().iter().map(|w| w.name);
+        if let Some(best) = nearest_word(name, self.scopes.names(), words()) {
+            return d.at(ident.span, did_you_mean(Some(best))).fix(best);
+        }
+        let d = d.at(ident.span, "nothing has this name");
+        match called {
+            true => d.note(format!("to make a function, write `fn {name}(…) = …`")),
+            false => {
+                d.note(format!("to give it a value, write `let {name} = …`; a text stands in quotes: `\"{name}\"`"))
             }
-            None => d,
         }
     }
 
@@ -659,15 +742,15 @@ impl Resolver {
         Code::Field(self.boxed(of), field.name.clone())
     }
 
-    fn call(&mut self, callee: &Expr, args: &[Arg], span: Span, mode: Mode) -> Code {
+    fn call(&mut self, callee: &Expr, args: &[Arg], mode: Mode) -> Code {
         if let Some(id) = self.builtin(callee) {
-            return self.call_builtin(id, args, span, mode);
+            return self.call_builtin(id, args, callee.span, mode);
         }
         if let ExprKind::Field { of, field } = &callee.kind {
             if let Some(m) = self.module(of)
                 && let Some(Export { function: Some(id), broken: false, .. }) = self.export_quietly(m, &field.name)
             {
-                return self.call_known(id, None, args, span);
+                return self.call_known(id, None, args, field.span);
             }
             if field.name == "with" && self.module(of).is_none() {
                 let of = self.boxed(of);
@@ -680,15 +763,16 @@ impl Resolver {
             match self.scopes.find(name) {
                 Some((access, b, _)) if matches!(b.kind, Kind::Function(_)) => {
                     let Kind::Function(id) = b.kind else { return Code::Failed };
+                    let at = callee.span;
                     let callee = match access {
                         Access::Global(_) => None,
                         _ => Some(self.boxed(callee)),
                     };
-                    return self.call_known(id, callee, args, span);
+                    return self.call_known(id, callee, args, at);
                 }
                 None => {
                     let ident = Ident { name: name.clone(), span: callee.span };
-                    let d = self.unknown(&ident);
+                    let d = self.unknown(&ident, true);
                     self.errors.push(d);
                     self.args_alone(args);
                     return Code::Failed;
@@ -733,17 +817,23 @@ impl Resolver {
                     self.errors.push(
                         Diagnostic::error(format!("`{what}` takes named values"))
                             .at(arg.name_span, "a name is missing")
-                            .note(format!("as in `{what}(size: 2)`")),
+                            .note(match what {
+                                "with" => "as in `leaf.with(size: 2)`",
+                                _ => "as in `record(size: 2)`",
+                            }),
                     );
                     good = false;
                 }
-                Some(name) if out.iter().any(|o| o.name.as_ref() == Some(name)) => {
-                    self.errors.push(
-                        Diagnostic::error(format!("`{name}` is given twice")).at(arg.name_span, "the second time"),
-                    );
-                    good = false;
+                Some(name) => {
+                    if let Some(first) = out.iter().find(|o| o.name.as_ref() == Some(name)) {
+                        self.errors.push(
+                            Diagnostic::error(format!("`{name}` is given twice"))
+                                .at(arg.name_span, "the second time")
+                                .at(first.name_span, "the first time"),
+                        );
+                        good = false;
+                    }
                 }
-                Some(_) => {}
             }
             out.push(arg);
         }
@@ -756,8 +846,9 @@ impl Resolver {
             return self.named_args(args, "record").map_or(Code::Failed, Code::Record);
         }
         if let Run::Constant(_) = word.run {
-            self.errors
-                .push(Diagnostic::error(format!("`{0}` isn't a function: write `{0}` alone", word.name)).at(span, ""));
+            self.errors.push(
+                Diagnostic::error(format!("`{0}` isn't a function", word.name)).at(span, "write it without `( )`"),
+            );
             self.args_alone(args);
             return Code::Failed;
         }
@@ -767,7 +858,7 @@ impl Resolver {
         {
             self.errors.push(
                 Diagnostic::error(format!("`{}` belongs at the top level of the file", word.name))
-                    .at(span, "")
+                    .at(span, "not within a block or function")
                     .note("it sets something for the whole picture and has no value"),
             );
             self.args_alone(args);
@@ -806,11 +897,13 @@ impl Resolver {
             .map(|(name, required)| Slot { name, required: *required, positional: *required, rest: false })
             .collect();
         let names: Vec<&str> = slots.iter().map(|s| s.name).collect();
-        let takes = if names.is_empty() {
-            format!("{name} takes nothing")
-        } else {
-            format!("{name} takes: {}", names.join(", "))
+        let mut takes = match &names[..] {
+            [] => format!("{name} takes nothing"),
+            _ => format!("{name} takes: {}", names.join(", ")),
         };
+        if catalog::find(&name).is_some() {
+            takes = format!("your own {takes}; the built-in one is `std.{name}`");
+        }
         let signature = Signature { name: &name, noun: "parameter", params: &slots, takes };
         let Some(places) = self.align(&signature, args, span) else { return Code::Failed };
         let mut out: Vec<Option<Node>> = (0..count).map(|_| None).collect();

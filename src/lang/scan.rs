@@ -68,10 +68,6 @@ const OPENING_WORDS: [&str; 7] = ["let", "var", "fn", "param", "import", "export
 
 impl Scanner<'_> {
     fn run(&mut self) {
-        if self.bytes.starts_with(b"\xEF\xBB\xBF") {
-            self.blank(0, 3); // a byte-order mark
-            self.i = 3;
-        }
         while self.i < self.bytes.len() {
             let inside_text = self.open.last().is_some_and(|o| o.mark == b'"');
             let c = self.bytes[self.i];
@@ -91,7 +87,7 @@ impl Scanner<'_> {
 
     fn text_byte(&mut self, c: u8) {
         match c {
-            b'\n' => return self.unclosed_text(),
+            b'\n' => return self.line_end(),
             b'\\' if self.bytes.get(self.i + 1).is_some_and(|n| *n != b'\n') => self.i += 1,
             b'"' => {
                 self.open.pop();
@@ -142,7 +138,8 @@ impl Scanner<'_> {
             self.open.pop();
             return;
         }
-        self.broken = true;
+        // What follows a bracket that doesn't fit is guesswork: one message a statement.
+        let first = !std::mem::replace(&mut self.broken, true);
         let here = self.span(self.i, self.i + 1);
         let error = match self.open.last() {
             None => {
@@ -160,13 +157,13 @@ impl Scanner<'_> {
                 error
             }
         };
-        self.errors.push(error);
+        if first {
+            self.errors.push(error);
+        }
     }
 
     fn line_end(&mut self) {
-        if let Some(k) = self.open.iter().position(|o| o.mark == b'"') {
-            // A text's {…} runs over the line's end: so does the text.
-            self.open.truncate(k + 1);
+        if self.open.iter().any(|o| o.mark == b'"') {
             return self.unclosed_text();
         }
         let word = self.next_word();
@@ -193,6 +190,7 @@ impl Scanner<'_> {
         self.i += 1;
     }
 
+    /// Whether a line that ends here goes on in the next.
     fn ends_with_operator(&self) -> bool {
         let Some(last) = self.last else { return false };
         if b"=+-*/^<>.&|".contains(&self.bytes[last]) {
@@ -249,8 +247,18 @@ impl Scanner<'_> {
     }
 
     fn unclosed_text(&mut self) {
-        if let Some(open) = self.open.pop() {
-            let here = self.span(open.at, self.i);
+        // A text's {…} that is still open has swallowed the quote that was to end the text.
+        let text = self.open.iter().position(|o| o.mark == b'"').unwrap_or(0);
+        if let Some(open) = self.open.get(text + 1) {
+            let here = self.span(open.at, open.at + 1);
+            self.errors.push(
+                Diagnostic::error("this `{` in a text is never closed")
+                    .at(here, "expected a `}` before the text ends")
+                    .note("`{…}` puts a value into a text; for the sign itself write `\\{`"),
+            );
+        } else if let Some(open) = self.open.get(text) {
+            let end = self.bytes[..self.i].iter().rposition(|b| !b.is_ascii_whitespace()).map_or(self.i, |k| k + 1);
+            let here = self.span(open.at, end);
             self.errors.push(
                 Diagnostic::error("this text is never closed")
                     .at(here, "a `\"` is missing at its end")
@@ -265,7 +273,9 @@ impl Scanner<'_> {
 
     fn unclosed_brackets(&mut self) {
         let keep = self.open.iter().rposition(|o| o.mark == b'{').map_or(0, |k| k + 1);
-        if let Some(open) = self.open.last() {
+        if let Some(open) = self.open.last()
+            && !self.broken
+        {
             self.errors.push(self.unclosed(open));
         }
         self.open.truncate(keep);
@@ -273,11 +283,12 @@ impl Scanner<'_> {
     }
 
     fn close_at_end(&mut self) {
-        if let Some(k) = self.open.iter().rposition(|o| o.mark == b'"') {
-            self.open.truncate(k + 1);
+        if self.open.iter().any(|o| o.mark == b'"') {
             self.unclosed_text();
         } else if let Some(open) = self.open.last() {
-            self.errors.push(self.unclosed(open));
+            if !self.broken {
+                self.errors.push(self.unclosed(open));
+            }
             self.broken = true;
         }
     }
@@ -319,6 +330,44 @@ impl Scanner<'_> {
     fn span(&self, from: usize, to: usize) -> Span {
         Span::new(self.file, from..to.min(self.bytes.len()).max(from))
     }
+}
+
+/// The innermost statement within a block `{ }` of prepared text that holds byte `at`; `None` outside of blocks.
+pub fn block_statement(text: &str, at: usize) -> Option<Range<usize>> {
+    let bytes = text.as_bytes();
+    // Open marks, and where the current statement of a `{` starts; that of a text's `{…}` is no block.
+    let mut open: Vec<(u8, usize)> = Vec::new();
+    let mut found: Option<(usize, usize)> = None;
+    let mut i = 0;
+    while i < bytes.len() {
+        if i == at {
+            found = open.iter().enumerate().rev().find(|(_, o)| o.0 == b'{').map(|(k, o)| (k + 1, o.1));
+            found?;
+        }
+        let here = found.is_some_and(|(depth, _)| open.len() == depth);
+        let c = bytes[i];
+        match open.last() {
+            Some((b'"', _)) => match c {
+                b'\\' if i + 1 != at => i += 1,
+                b'"' => drop(open.pop()),
+                b'{' => open.push((b'i', i)),
+                _ => {}
+            },
+            last => match c {
+                b';' | b'}' if here => return found.map(|(_, start)| start..i),
+                b'"' | b'(' | b'[' | b'{' => open.push((c, i + 1)),
+                b')' | b']' | b'}' => drop(open.pop()),
+                b';' if last.is_some_and(|o| o.0 == b'{') => {
+                    if let Some(block) = open.last_mut() {
+                        block.1 = i + 1;
+                    }
+                }
+                _ => {}
+            },
+        }
+        i += 1;
+    }
+    None
 }
 
 fn closer(open: u8) -> u8 {

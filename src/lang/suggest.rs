@@ -44,6 +44,51 @@ pub fn nearest_property<'a>(word: &str, names: impl Iterator<Item = &'a str> + C
     })
 }
 
+/// What other languages call the words of this one.
+const FOREIGN_WORDS: [(&str, &str); 29] = [
+    ("ball", "sphere"),
+    ("cube", "box"),
+    ("cuboid", "box"),
+    ("block", "box"),
+    ("rect", "box"),
+    ("tube", "cylinder"),
+    ("donut", "torus"),
+    ("ring", "torus"),
+    ("circle", "disc"),
+    ("disk", "disc"),
+    ("ground", "plane"),
+    ("pyramid", "tetrahedron"),
+    ("translate", "move"),
+    ("shift", "move"),
+    ("resize", "scale"),
+    ("turn", "rotate"),
+    ("spin", "rotate"),
+    ("point_light", "light"),
+    ("light_source", "light"),
+    ("lamp", "light"),
+    ("sky", "background"),
+    ("material", "phong"),
+    ("diffuse", "matte"),
+    ("metal", "mirror"),
+    ("texture", "image"),
+    ("color", "rgb"),
+    ("grey", "gray"),
+    ("log", "ln"),
+    ("random", "rand"),
+];
+
+/// Like [`nearest`], for what can be used: the names of a scene, nearest scope first, then the words of the language,
+/// by what others call them too.
+pub fn nearest_word<'a>(
+    word: &str,
+    names: impl Iterator<Item = &'a str>,
+    words: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    let foreign = FOREIGN_WORDS.iter().find(|(there, _)| *there == word);
+    let foreign = foreign.and_then(|(_, here)| words.clone().find(|w| w == here));
+    foreign.or_else(|| nearest(word, names.chain(words)))
+}
+
 /// `did you mean …?`, or nothing.
 pub fn did_you_mean(best: Option<&str>) -> String {
     best.map_or(String::new(), |b| format!("did you mean `{b}`?"))

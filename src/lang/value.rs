@@ -80,7 +80,7 @@ impl Value {
             Value::Number(_) => "a number",
             Value::Angle(_) => "an angle",
             Value::Vec3(_) | Value::List(_) => "a list",
-            Value::Text(_) => "text",
+            Value::Text(_) => "a text",
             Value::Color(_) => "a color",
             Value::Range(_) => "a range",
             Value::Record(_) => "a record",

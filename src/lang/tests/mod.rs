@@ -1,5 +1,7 @@
 //! The language end to end: texts in, scenes or messages out.
 
+mod mutation;
+
 use super::limits::Limits;
 use super::*;
 use crate::scene::{AntiAliasing, NodeKind, PatternKind, Shape};
