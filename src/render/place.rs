@@ -13,8 +13,10 @@ pub struct Placed {
     pub form: Form,
     /// From the shape's frame to the camera-relative world.
     pub world_from_local: Affine,
-    /// From the shape's frame (for triangles: from (β, 0, γ)) to the space in which it was made.
+    /// From the shape's frame before any scaling (for triangles: from (β, 0, γ)) to the space in which it was made.
     pub made_from_local: Affine,
+    /// How the frame's lengths were scaled.
+    pub rescale: Option<Rescale>,
     /// Its extent in its frame: centre, half size. `None` for what has no end.
     pub extent: Option<[[f64; 3]; 2]>,
 }
@@ -25,6 +27,29 @@ pub enum Form {
     Framed(Kind),
     /// Corners in the world, normal and shading normals there.
     Triangle([[f64; 3]; 3], [f64; 3], Option<[[f64; 3]; 3]>),
+}
+
+/// Leads from lengths of a scaled frame back to those in which the shape was made. Faces keep their exact coordinates there: a
+/// product with 1/s would leave them beside the cell boundaries of patterns on which they were put.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rescale {
+    /// 1/s.
+    pub inverse: f64,
+    /// By axis: coordinates of the two faces across it in the scaled frame, and as made; NaN where there are none.
+    pub faces: [[(f64, f64); 2]; 3],
+}
+
+impl Rescale {
+    fn new(s: f64, kind: &Kind) -> Rescale {
+        let mut faces = [[(f64::NAN, f64::NAN); 2]; 3];
+        let face = |x: f64| (x * s, x);
+        match kind {
+            Kind::Cuboid(half) => faces = half.map(|h| [face(-h), face(h)]),
+            Kind::Tube(t) => faces[1] = [face(t.bottom), face(t.top)],
+            _ => {}
+        }
+        Rescale { inverse: 1.0 / s, faces }
+    }
 }
 
 /// Relative size below which an entry of a map is the rounding error of a rotation: 512 roundings.
@@ -84,6 +109,7 @@ fn sphere(at: DVec3, r: f64, world_from_object: &Affine) -> Placed {
         form: Form::Framed(Kind::Sphere(r * s)),
         world_from_local: Affine { shift, ..Affine::IDENTITY },
         made_from_local: if turn.is_translation() { centre } else { centre.compose(&back) },
+        rescale: None, // the turn's inverse scales back; a curved surface has no faces
         extent: Some([[0.0; 3], [r * s; 3]]),
     }
 }
@@ -106,11 +132,18 @@ fn tube(from: DVec3, to: DVec3, r: f64, top: f64, caps: bool, world_from_object:
 fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, world: &Affine) -> Placed {
     let world_from_local = world.compose(&object_from_local);
     let Some(s) = similarity(world) else {
-        return Placed { form: Form::Framed(kind), world_from_local, made_from_local: object_from_local, extent };
+        return Placed {
+            form: Form::Framed(kind),
+            world_from_local,
+            made_from_local: object_from_local,
+            rescale: None,
+            extent,
+        };
     };
     // Sizes take the scale, so that the frame is a rotation, often none at all.
     let unit = Affine::scaling(DVec3::splat(s)).inverse().unwrap_or(Affine::IDENTITY);
     let grow = |v: [f64; 3]| v.map(|x| x * s);
+    let rescale = (s != 1.0).then(|| Rescale::new(s, &kind));
     let kind = match kind {
         Kind::Sphere(r) => Kind::Sphere(r * s),
         Kind::Plane => Kind::Plane,
@@ -123,7 +156,8 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
     Placed {
         form: Form::Framed(kind),
         world_from_local: world_from_local.compose(&unit),
-        made_from_local: object_from_local.compose(&unit),
+        made_from_local: object_from_local,
+        rescale,
         extent: extent.map(|e| e.map(grow)),
     }
 }
@@ -147,6 +181,7 @@ fn triangle(points: [DVec3; 3], normals: Option<[DVec3; 3]>, world: &Affine) -> 
         form: Form::Triangle(v, to_world(n), normals.map(|ns| ns.map(to_world))),
         world_from_local: Affine::IDENTITY,
         made_from_local: made,
+        rescale: None,
         extent: None,
     }
 }
@@ -238,7 +273,8 @@ mod tests {
         let placed = &place(&Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Y, r: 2.0, caps: true }, &world)[0];
         let Form::Framed(Kind::Tube(t)) = &placed.form else { panic!() };
         assert_eq!((t.radius, t.top), (6.0, 3.0));
-        assert_eq!(placed.made_from_local.apply(DVec3::new(0.0, 3.0, 0.0)), DVec3::Y);
+        assert_eq!(placed.rescale.unwrap().faces[1], [(0.0, 0.0), (3.0, 1.0)]);
+        assert_eq!(placed.made_from_local.apply(DVec3::Y), DVec3::Y);
         assert_eq!(placed.world_from_local.apply(DVec3::new(0.0, 3.0, 0.0)), DVec3::new(-3.0, 0.0, 0.0));
     }
 

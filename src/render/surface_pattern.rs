@@ -41,6 +41,24 @@ impl<'w> PatternFrame<'w> {
     /// The point `local` of the primitive's frame, with outward normal `n` in the world.
     #[inline(always)]
     pub fn point<'s, R: Real>(&self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
+        self.point_as_made(spaces, self.as_made(local), n)
+    }
+
+    /// A point of the primitive's frame in the lengths in which the shape was made.
+    #[inline(always)]
+    fn as_made<R: Real>(&self, local: [R; 3]) -> [R; 3] {
+        let Some(MadeSpace { rescale: Some(rescale), .. }) = self.made else { return local };
+        three(|i| {
+            let mut x = local[i] * R::splat(rescale.inverse);
+            for (scaled, made) in rescale.faces[i] {
+                x = R::select(local[i].same(R::splat(scaled)), R::splat(made), x);
+            }
+            x
+        })
+    }
+
+    #[inline(always)]
+    fn point_as_made<'s, R: Real>(&self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
         let p = match spaces.first() {
             Some(first) => apply(first, local),
             None => local,
@@ -93,9 +111,10 @@ fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
 pub fn bumped<R: Real>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3], n: [R; 3], ns: [R; 3]) -> [R; 3] {
     let (Some((pattern, step)), Some(made)) = (frame.surfacing.bump, frame.made) else { return ns };
     let Some(detail) = &made.detail else { return ns };
-    let at = frame.point(spaces, local, n);
+    let local = frame.as_made(local);
+    let at = frame.point_as_made(spaces, local, n);
     let height = |local: [R; 3]| {
-        let mut q = frame.point(spaces, local, n);
+        let mut q = frame.point_as_made(spaces, local, n);
         q.normal = at.normal; // pictures laid on by normal stay where they are
         frame.world.patterns.eval(pattern, &q)[0]
     };

@@ -9,7 +9,7 @@ use super::camera::CameraFrame;
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
 use super::pattern::PatternTable;
-use super::place::{Form, Placed, place, world_bounds};
+use super::place::{Form, Placed, Rescale, place, world_bounds};
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Primitive, TriangleData};
 use crate::math::Affine;
@@ -41,6 +41,7 @@ pub struct World {
 /// The way from a primitive's frame to the space in which its shape was made.
 pub(super) struct MadeSpace {
     pub(super) made_from_local: Affine,
+    pub(super) rescale: Option<Rescale>,
     /// Only where a picture or a bump asks.
     pub(super) detail: Option<MadeDetail>,
 }
@@ -172,7 +173,7 @@ impl World {
                     half_height: made.half_height,
                 }
             });
-            self.spaces.push(MadeSpace { made_from_local: placed.made_from_local, detail });
+            self.spaces.push(MadeSpace { made_from_local: placed.made_from_local, rescale: placed.rescale, detail });
         }
         let maps = &mut self.maps;
         let frame = Frame::new(&placed.world_from_local, |m| {

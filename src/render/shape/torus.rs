@@ -7,6 +7,7 @@ use super::{Point, SIDE, Visit};
 use crate::math::Real;
 use crate::math::fun::sqrt;
 use crate::math::real::{dot, each3, three, two_sum};
+use crate::render::bounds::larger;
 use crate::render::ray::{LocalRay, Own};
 
 /// A ring around the y axis, of unit magnitude: fourth powers of its lengths stay in range whatever the scene's scale.
@@ -23,10 +24,16 @@ pub struct Ring {
 impl Ring {
     /// The ring with these radii.
     pub fn new(r: f64, tube: f64) -> Ring {
-        // The reciprocal of the power of two in r's exponent field; r is a normal number far from both ends of the range.
-        let scale = f64::from_bits((2046 << 52) - (r.to_bits() & (0x7ff << 52)));
+        let scale = reciprocal_power(r);
         Ring { r: r * scale, tube: tube * scale, scale }
     }
+}
+
+/// The power of two whose product with x > 0 lies in 1..2, from x's exponent field; x is a normal number far from both ends
+/// of the range.
+#[inline(always)]
+fn reciprocal_power(x: f64) -> f64 {
+    f64::from_bits((2046 << 52) - (x.to_bits() & (0x7ff << 52)))
 }
 
 /// Calls `visit(t, part, valid)` for up to four crossings.
@@ -36,7 +43,15 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
     let [o, lo, d] = [ray.o, ray.o_lo, ray.d];
     let t = R::each([o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2]], |v| {
         let at = |i: usize| three(|k| v[i + k] * ring.scale);
-        ring_roots(ring, at(0), at(3), at(6))
+        let d = at(6);
+        // The direction is brought to unit magnitude, too: its length is the world's, and its fourth power is needed.
+        let longest = larger(d[0].abs(), larger(d[1].abs(), d[2].abs()));
+        let k = reciprocal_power(longest);
+        let mut t = ring_roots(ring, at(0), at(3), three(|i| d[i] * k));
+        for x in &mut t {
+            *x *= k; // from lengths of the shortened direction to those of the ray's
+        }
+        t
     });
     let nearest = t.iter().skip(1).fold(t[0], |best, &x| R::select(x.abs().lt(best.abs()), x, best));
     for x in t {
