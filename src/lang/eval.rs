@@ -1,16 +1,13 @@
 //! Evaluates expressions.
 
 use super::ast::Op;
-use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Frame, Machine};
 use super::ops;
-use super::suggest::{did_you_mean, nearest};
 use super::value::{Closure, Value};
-use super::word::{described, kind_of};
+use super::word::described;
 use crate::diag::Span;
-use crate::scene::NodeKind;
 use ecow::{EcoString, EcoVec};
 use std::sync::Arc;
 
@@ -119,7 +116,7 @@ impl<'p> Machine<'p> {
     }
 
     #[inline]
-    fn present(&self, value: &Value, span: Span) -> Outcome {
+    pub fn present(&self, value: &Value, span: Span) -> Outcome {
         if matches!(value, Value::Unset | Value::Poison) {
             return Err(self.missing(value, span));
         }
@@ -237,27 +234,6 @@ impl<'p> Machine<'p> {
         Ok(Value::List(out))
     }
 
-    fn collect(&mut self, items: &'p [Node], frame: Frame<'_>) -> Outcome {
-        self.lists.push(EcoVec::new());
-        for n in items {
-            self.eval(n, frame)?;
-        }
-        Ok(Value::list(self.lists.pop().unwrap_or_default()))
-    }
-
-    fn push(&mut self, value: Value, span: Span) -> Outcome {
-        self.step(span)?;
-        self.hold(&value, span)?;
-        let most = self.limits.list_length;
-        let Some(list) = self.lists.last_mut() else { return Ok(Value::None) };
-        if list.len() >= most {
-            let note = "usually a loop that runs too often";
-            return Err(self.fail(Fault::budget(format!("this list has more than {most} values"), note), span));
-        }
-        list.push(value);
-        Ok(Value::None)
-    }
-
     fn for_(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Outcome {
         let over = self.eval(&f.over, frame)?;
         if !matches!(over, Value::Range(_) | Value::List(_) | Value::Vec3(_)) {
@@ -302,188 +278,5 @@ impl<'p> Machine<'p> {
             );
         }
         Ok(Value::Text(out))
-    }
-
-    fn discard(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
-        let value = self.eval(node, frame)?;
-        let fault = match &value {
-            Value::None => return Ok(Value::None),
-            Value::Node(_) => {
-                let what = kind_of(&value, &self.build);
-                Fault::new(format!("this makes {what} that isn't added to anything"))
-                    .label("did you mean `group { … }`?")
-                    .note("a shape outside a scene block is lost: return it, put it in a list, or collect it in a `group { … }`")
-            }
-            other => Fault::new("this value isn't used").label(format!("it is {}", described(other, &self.build))),
-        };
-        Err(self.fail(fault, node.span))
-    }
-
-    /// Adds shapes and lights, alone or in lists, to the scene block around.
-    fn emit(&mut self, value: &Value, span: Span) -> Result<(), Stop> {
-        match value {
-            Value::None => Ok(()),
-            Value::Node(id) => {
-                self.collected.last_mut().into_iter().for_each(|c| c.push(*id));
-                Ok(())
-            }
-            Value::List(items) if items.iter().all(|v| matches!(v, Value::Node(_) | Value::List(_))) => {
-                self.steps += items.len() as u64;
-                items.iter().try_for_each(|v| self.emit(v, span))
-            }
-            other => {
-                let got = described(other, &self.build);
-                let fault = Fault::new("a scene is made of shapes and lights");
-                let odd = |v: &&Value| !matches!(v, Value::Node(_) | Value::List(_));
-                let fault = match other {
-                    Value::List(items) if let Some(v) = items.iter().find(odd) => {
-                        fault.label(format!("this is a list with {} in it", described(v, &self.build)))
-                    }
-                    _ => fault.label(format!("this is {got}")),
-                };
-                Err(self.fail(
-                    match other {
-                        Value::Function(_) | Value::Builtin(_) => {
-                            fault.note("to call a function, write `( )` after its name")
-                        }
-                        Value::Material(_) | Value::Pattern(_) => {
-                            fault.note("a material goes on a shape: `sphere(mat: …)`")
-                        }
-                        _ => fault.note("give a value a name with `let`"),
-                    },
-                    span,
-                ))
-            }
-        }
-    }
-
-    fn group(&mut self, args: &'p [(u16, Node)], body: &'p Node, span: Span, frame: Frame<'_>) -> Outcome {
-        let mut values = [Value::Unset, Value::Unset];
-        for (i, node) in args {
-            values[usize::from(*i).min(1)] = self.eval(node, frame)?;
-        }
-        if let Some(id) = catalog::find("group") {
-            catalog::word(id).check(&mut values, &self.build).map_err(|f| self.locate(f, span, args))?;
-        }
-        self.collected.push(Vec::new());
-        self.eval(body, frame)?;
-        let children = self.collected.pop().unwrap_or_default();
-        let [material, name] = values;
-        let material = if let Value::Material(id) = material { Some(id) } else { None };
-        let name = if let Value::Text(t) = name { Some(t.to_string()) } else { None };
-        self.here = span;
-        let place = super::word::Host::place(self);
-        self.build.node(NodeKind::Group(children), material, name, place).map_err(|f| self.fail(f, span))
-    }
-
-    fn index(&mut self, of: &Value, index: &Value, ab: &'p (Node, Node)) -> Outcome {
-        let span = ab.1.span;
-        let Some(n) = of.length().filter(|_| matches!(of, Value::List(_) | Value::Vec3(_) | Value::Range(_))) else {
-            let got = described(of, &self.build);
-            return Err(self.fail(Fault::new(format!("`[…]` takes an item of a list, got {got}")), ab.0.span));
-        };
-        let Value::Number(i) = index.clone() else {
-            let got = described(index, &self.build);
-            return Err(self.fail(Fault::new(format!("an index must be a whole number, got {got}")), span));
-        };
-        if i.fract() != 0.0 {
-            let got = described(index, &self.build);
-            return Err(self.fail(Fault::new(format!("an index must be a whole number, got {got}")), span));
-        }
-        if i >= 0.0 && (i as u64) < n {
-            return Ok(of.item(i as u64).unwrap_or(Value::None));
-        }
-        let i = index.show(40);
-        let fault = match n {
-            0 => Fault::new("the list is empty"),
-            _ => {
-                let fault = Fault::new(format!("the list has no item {i}"));
-                fault.note(format!("its {n} items are numbered from 0 to {}", n - 1))
-            }
-        };
-        Err(self.fail(fault, span))
-    }
-
-    fn field(&mut self, of: &Value, name: &EcoString, span: Span) -> Outcome {
-        let axis = |n: &str| ["x", "y", "z"].iter().position(|a| *a == n);
-        let names: Vec<&str> = match of {
-            Value::Record(r) => match r.get(name) {
-                Some(v) => return self.present(v, span),
-                None => r.keys().map(EcoString::as_str).collect(),
-            },
-            Value::Vec3(_) | Value::List(_) => {
-                let item = axis(name).and_then(|i| of.item(i as u64));
-                if let Some(v) = item {
-                    return Ok(v);
-                }
-                vec!["x", "y", "z"]
-            }
-            Value::Color(c) => match ["r", "g", "b"].iter().position(|a| *a == name) {
-                Some(i) => return Ok(Value::Number(c.0[i])),
-                None => vec!["r", "g", "b"],
-            },
-            Value::Material(id) => match self.build.slot(*id, name) {
-                Some(v) => return Ok(v),
-                None => catalog::material_slots().iter().map(|p| p.name).collect(),
-            },
-            _ => Vec::new(),
-        };
-        let end = Span { start: span.end - (name.len() as u32).min(span.end), ..span };
-        let what = kind_of(of, &self.build);
-        let best = nearest(name, names.iter().copied());
-        let fault = Fault::new(format!("{what} has no `.{name}`")).label(did_you_mean(best));
-        let fault = if names.is_empty() { fault } else { fault.note(format!("it has: {}", names.join(", "))) };
-        Err(self.fail(fault, end))
-    }
-
-    fn with(&mut self, of: &'p Node, args: &'p [ArgCode], span: Span, frame: Frame<'_>) -> Outcome {
-        let value = self.eval(of, frame)?;
-        match value {
-            Value::Record(mut record) => {
-                for a in args {
-                    let name = a.name.clone().unwrap_or_default();
-                    let value = self.eval(&a.value, frame)?;
-                    if !record.contains_key(&name) {
-                        let best = nearest(&name, record.keys().map(EcoString::as_str));
-                        let keys: Vec<&str> = record.keys().map(EcoString::as_str).collect();
-                        let fault = Fault::new(format!("the record has no `{name}`"))
-                            .label(did_you_mean(best))
-                            .note(format!("it has: {}", keys.join(", ")));
-                        return Err(self.fail(fault, a.name_span));
-                    }
-                    self.hold(&value, span)?;
-                    Arc::make_mut(&mut record).insert(name, value);
-                }
-                Ok(Value::Record(record))
-            }
-            Value::Material(id) => {
-                let mut m = self.build.scene.material(id).clone();
-                let slots = catalog::material_slots();
-                for a in args {
-                    let name = a.name.clone().unwrap_or_default();
-                    let value = self.eval(&a.value, frame)?;
-                    let Some(p) = slots.iter().find(|p| p.name == name) else {
-                        let best = super::suggest::nearest_property(&name, slots.iter().map(|p| p.name));
-                        let names: Vec<&str> = slots.iter().map(|p| p.name).collect();
-                        let fault = Fault::new(format!("a material has no `{name}`"))
-                            .label(did_you_mean(best))
-                            .note(format!("it has: {}", names.join(", ")));
-                        return Err(self.fail(fault, a.name_span));
-                    };
-                    let absent = matches!(value, Value::None) && p.default == super::word::Default::Absent;
-                    if !absent {
-                        p.check(&value, &self.build).map_err(|f| self.fail(f, a.value.span))?;
-                    }
-                    self.build.set_slot(&mut m, &name, &value);
-                }
-                self.here = span;
-                m.place = Some(super::word::Host::place(self));
-                self.build.material(m).map_err(|f| self.fail(f, span))
-            }
-            other => {
-                let got = kind_of(&other, &self.build);
-                Err(self.fail(Fault::new(format!("`.with` changes a record or a material, got {got}")), of.span))
-            }
-        }
     }
 }

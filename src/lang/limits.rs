@@ -21,7 +21,7 @@ pub struct Limits {
     pub text_length: usize,
     /// Bytes of all texts that are made.
     pub text_total: usize,
-    /// Shapes, lights, groups and transforms that are made, and likewise patterns and materials.
+    /// Shapes, lights, groups and transforms that are made, and likewise patterns and materials: about a gigabyte of them.
     pub objects: usize,
     /// Shapes and lights in the world, a shared one counted at each of its places.
     pub instances: u64,
@@ -56,7 +56,7 @@ impl Default for Limits {
             containers: 1_000_000,
             text_length: 1_000_000,
             text_total: 256 << 20,
-            objects: 10_000_000,
+            objects: 4_000_000,
             instances: 10_000_000,
             pattern_depth: 200,
             pattern_size: 100_000,

@@ -4,12 +4,14 @@
 //! names into slots and makes the `code` that `eval` runs; [`catalog`] is the vocabulary; `build` holds the scene
 //! meanwhile; `finish` takes the last look. Mistakes of all phases come out together, in the order of the text.
 
+mod access;
 mod args;
 mod ast;
 mod build;
 mod call;
 pub mod catalog;
 mod code;
+mod collect;
 mod eval;
 mod fault;
 mod finish;

@@ -1,14 +1,20 @@
 //! "Did you mean …?": the nearest spelling among the names that would be right.
 
+/// Nobody misspells a longer word, and the distance takes time with its length.
+const LONGEST_WORD: usize = 64;
+
 /// The candidate nearest to `word` by Damerau–Levenshtein distance, if it is near enough: a third of the word's letters,
 /// at least one, but not all of them. Of equally near ones the first wins. Case is ignored at first: `Sphere` is `sphere`.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let letters = word.chars().count();
+    if letters > LONGEST_WORD {
+        return None;
+    }
     let cutoff = (letters / 3).max(1).min(letters.saturating_sub(1));
     let lower = word.to_lowercase();
     candidates
         .into_iter()
-        .filter(|c| *c != word)
+        .filter(|c| *c != word && c.len() <= 4 * LONGEST_WORD)
         .map(|c| (strsim::damerau_levenshtein(&lower, &c.to_lowercase()), c))
         .filter(|(d, _)| *d <= cutoff)
         .min_by_key(|(d, _)| *d)

@@ -1,9 +1,9 @@
 //! Every example and every wrong scene of `tests/errors`, damaged in thousands of seeded ways: whatever the text,
 //! evaluation ends, and ends in a scene or in messages that can be printed. `RTDSL_MUTATIONS=N` damages N times.
 
-use super::super::limits::Limits;
-use super::super::*;
 use crate::diag::{Look, print};
+use crate::lang::limits::Limits;
+use crate::lang::*;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -2,6 +2,8 @@
 //! and turns every line's end into `;` where it ends a statement and into a blank where it doesn't. No byte moves, so the
 //! grammar's positions are the file's. Splitting the text at its outermost statements lets one mistake be reported for each.
 
+mod unclosed;
+
 use super::limits::{ARROW_DEPTH, BRACKET_DEPTH};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
 use std::ops::Range;
@@ -38,6 +40,7 @@ pub fn prepare(file: FileId, text: &str) -> (Prepared, Diagnostics) {
         arrows: 0,
         pieces: Vec::new(),
         errors: Vec::new(),
+        next_word: 0..0,
     };
     s.run();
     let text = String::from_utf8(s.out).unwrap_or_default();
@@ -62,6 +65,8 @@ struct Scanner<'a> {
     arrows: u32,
     pieces: Vec<Piece>,
     errors: Diagnostics,
+    /// Where the next line with any text starts; everything up to it is blanks and comments.
+    next_word: Range<usize>,
 }
 
 const OPENING_WORDS: [&str; 7] = ["let", "var", "fn", "param", "import", "export", "while"];
@@ -132,36 +137,6 @@ impl Scanner<'_> {
         self.i += 1;
     }
 
-    fn closing(&mut self, c: u8) {
-        let wanted = self.open.last().map(|o| closer(o.mark));
-        if wanted == Some(c) {
-            self.open.pop();
-            return;
-        }
-        // What follows a bracket that doesn't fit is guesswork: one message a statement.
-        let first = !std::mem::replace(&mut self.broken, true);
-        let here = self.span(self.i, self.i + 1);
-        let error = match self.open.last() {
-            None => {
-                Diagnostic::error(format!("`{}` closes nothing", c as char)).at(here, "no bracket is open here").fix("")
-            }
-            Some(open) => {
-                let (mark, wanted) = (open.mark as char, closer(open.mark) as char);
-                let error = Diagnostic::error(format!("`{mark}` is closed by `{}`", c as char))
-                    .at(here, format!("expected `{wanted}`"))
-                    .at(self.span(open.at, open.at + 1), "opened here");
-                // Close up to the bracket that this one fits, if there is one.
-                // Otherwise take it for a slip of the innermost.
-                let fits = self.open.iter().rposition(|o| closer(o.mark) == c);
-                self.open.truncate(fits.unwrap_or(self.open.len() - 1));
-                error
-            }
-        };
-        if first {
-            self.errors.push(error);
-        }
-    }
-
     fn line_end(&mut self) {
         if self.open.iter().any(|o| o.mark == b'"') {
             return self.unclosed_text();
@@ -203,8 +178,17 @@ impl Scanner<'_> {
         matches!(&self.bytes[word_start..=last], b"and" | b"or" | b"not" | b"in" | b"else")
     }
 
-    /// The word, or `|>`, that the next line with any starts with.
-    fn next_word(&self) -> &str {
+    /// The word, or `|>`, that the next line with any starts with. Found once for all the blank lines and comments before
+    /// it: a long comment must not be read again from each of its lines.
+    fn next_word(&mut self) -> &str {
+        if self.next_word.start <= self.i {
+            self.next_word = self.find_next_word();
+        }
+        std::str::from_utf8(&self.bytes[self.next_word.clone()]).unwrap_or("")
+    }
+
+    fn find_next_word(&self) -> Range<usize> {
+        let all = self.bytes.len();
         let mut i = self.i;
         loop {
             while self.bytes.get(i).is_some_and(|b| b.is_ascii_whitespace()) {
@@ -218,17 +202,14 @@ impl Scanner<'_> {
                 }
                 Some(b"/*") => match comment_end(self.bytes, i) {
                     Some(end) => i = end,
-                    None => return "",
+                    None => return all..all,
                 },
-                Some(b"|>") => return "|>",
+                Some(b"|>") => return i..i + 2,
                 _ => break,
             }
         }
-        let end = self.bytes[i..]
-            .iter()
-            .position(|b| !(b.is_ascii_alphanumeric() || *b == b'_' || *b >= 0x80))
-            .map_or(self.bytes.len(), |n| i + n);
-        std::str::from_utf8(&self.bytes[i..end]).unwrap_or("")
+        let is_word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_' || *b >= 0x80;
+        i..self.bytes[i..].iter().position(|b| !is_word(b)).map_or(all, |n| i + n)
     }
 
     fn block_comment(&mut self) {
@@ -244,73 +225,6 @@ impl Scanner<'_> {
         let end = end.unwrap_or(self.bytes.len());
         self.blank(self.i, end);
         self.i = end;
-    }
-
-    fn unclosed_text(&mut self) {
-        // A text's {…} that is still open has swallowed the quote that was to end the text.
-        let text = self.open.iter().position(|o| o.mark == b'"').unwrap_or(0);
-        if let Some(open) = self.open.get(text + 1) {
-            let here = self.span(open.at, open.at + 1);
-            self.errors.push(
-                Diagnostic::error("this `{` in a text is never closed")
-                    .at(here, "expected a `}` before the text ends")
-                    .note("`{…}` puts a value into a text; for the sign itself write `\\{`"),
-            );
-        } else if let Some(open) = self.open.get(text) {
-            let end = self.bytes[..self.i].iter().rposition(|b| !b.is_ascii_whitespace()).map_or(self.i, |k| k + 1);
-            let here = self.span(open.at, end);
-            self.errors.push(
-                Diagnostic::error("this text is never closed")
-                    .at(here, "a `\"` is missing at its end")
-                    .note("a text ends on the line on which it starts; write `\\n` for a new line in it"),
-            );
-        }
-        self.broken = true;
-        // The rest of the statement can't be told from the text; start afresh with the line.
-        self.open.clear();
-        self.last = None;
-    }
-
-    fn unclosed_brackets(&mut self) {
-        let keep = self.open.iter().rposition(|o| o.mark == b'{').map_or(0, |k| k + 1);
-        if let Some(open) = self.open.last()
-            && !self.broken
-        {
-            self.errors.push(self.unclosed(open));
-        }
-        self.open.truncate(keep);
-        self.broken = true;
-    }
-
-    fn close_at_end(&mut self) {
-        if self.open.iter().any(|o| o.mark == b'"') {
-            self.unclosed_text();
-        } else if let Some(open) = self.open.last() {
-            if !self.broken {
-                self.errors.push(self.unclosed(open));
-            }
-            self.broken = true;
-        }
-    }
-
-    fn unclosed(&self, open: &Open) -> Diagnostic {
-        Diagnostic::error(format!("this `{}` is never closed", open.mark as char)).at(
-            self.span(open.at, open.at + 1),
-            format!("expected a `{}` somewhere after it", closer(open.mark) as char),
-        )
-    }
-
-    fn too_deep(&mut self) {
-        let at = self.i.saturating_sub(1);
-        let error = if self.open.len() > BRACKET_DEPTH {
-            Diagnostic::error(format!("brackets are nested more than {BRACKET_DEPTH} deep"))
-        } else {
-            Diagnostic::error(format!("functions are nested more than {ARROW_DEPTH} deep"))
-        };
-        self.errors.push(
-            error.at(self.span(at, at + 1), "too deep here").note("give the inner part a name with `let` and use that"),
-        );
-        self.pieces.push(Piece { range: self.start..self.bytes.len(), broken: true });
     }
 
     fn end_statement(&mut self, end: usize) {
@@ -330,44 +244,6 @@ impl Scanner<'_> {
     fn span(&self, from: usize, to: usize) -> Span {
         Span::new(self.file, from..to.min(self.bytes.len()).max(from))
     }
-}
-
-/// The innermost statement within a block `{ }` of prepared text that holds byte `at`; `None` outside of blocks.
-pub fn block_statement(text: &str, at: usize) -> Option<Range<usize>> {
-    let bytes = text.as_bytes();
-    // Open marks, and where the current statement of a `{` starts; that of a text's `{…}` is no block.
-    let mut open: Vec<(u8, usize)> = Vec::new();
-    let mut found: Option<(usize, usize)> = None;
-    let mut i = 0;
-    while i < bytes.len() {
-        if i == at {
-            found = open.iter().enumerate().rev().find(|(_, o)| o.0 == b'{').map(|(k, o)| (k + 1, o.1));
-            found?;
-        }
-        let here = found.is_some_and(|(depth, _)| open.len() == depth);
-        let c = bytes[i];
-        match open.last() {
-            Some((b'"', _)) => match c {
-                b'\\' if i + 1 != at => i += 1,
-                b'"' => drop(open.pop()),
-                b'{' => open.push((b'i', i)),
-                _ => {}
-            },
-            last => match c {
-                b';' | b'}' if here => return found.map(|(_, start)| start..i),
-                b'"' | b'(' | b'[' | b'{' => open.push((c, i + 1)),
-                b')' | b']' | b'}' => drop(open.pop()),
-                b';' if last.is_some_and(|o| o.0 == b'{') => {
-                    if let Some(block) = open.last_mut() {
-                        block.1 = i + 1;
-                    }
-                }
-                _ => {}
-            },
-        }
-        i += 1;
-    }
-    None
 }
 
 fn closer(open: u8) -> u8 {
