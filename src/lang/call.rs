@@ -77,7 +77,9 @@ impl<'p> Machine<'p> {
             let x_text = number_text(*x);
             let fault = match word.name {
                 "sqrt" => Fault::new(format!("{x_text} has no square root")).note("numbers from 0 up have one"),
-                "ln" => Fault::new(format!("{x_text} has no logarithm")).note("numbers above 0 have one"),
+                "log" | "log2" | "log10" => {
+                    Fault::new(format!("{x_text} has no logarithm")).note("numbers above 0 have one")
+                }
                 name => {
                     Fault::new(format!("`{name}` of {x_text} is too large")).note("the largest number is about 1.8e308")
                 }
