@@ -154,7 +154,7 @@ fn the_point_of_a_hit_is_on_the_ray_and_on_the_surface() {
             for (t, part) in c.crossings(o, d, None) {
                 let s = c.primitive.surface::<f64, false>(c.tables(), o, d, t, part);
                 let on_ray = axpy(t, d, o);
-                let gap: f64 = (0..3).map(|i| (s.p[i] - on_ray[i]).powi(2)).sum::<f64>().sqrt();
+                let gap = DVec3::from_array(s.p).distance(DVec3::from_array(on_ray));
                 let size = DVec3::from_array(s.p).length() + t.abs();
                 // At a grazing angle an error across the ray is a longer one along it.
                 let grazing = dot(s.n, d).abs() + 1e-6;

@@ -223,6 +223,33 @@ fn a_floor_on_a_cell_boundary_has_no_speckle() {
     }
 }
 
+/// Shapes of many kinds, whose faces lie on the boundaries of their checkers, scaled as a whole.
+#[test]
+fn scaled_groups_keep_their_patterns_and_every_shape() {
+    let scene = |s: f64| {
+        let mut b = Builder::new();
+        let (white, black) = (b.gray(1.0), b.gray(0.0));
+        let checker = b.pattern(PatternKind::Checker { a: white, b: black, size: 0.2 });
+        let m = b.phong(checker, 0.3, 0.0, 0.0);
+        let map = Affine::scaling(DVec3::splat(s));
+        let turned = map.compose(&Affine::rotation(0, 40.0));
+        b.placed(Shape::Box { from: v(-1.0, -0.05, -1.0), to: v(1.0, 0.0, 1.0) }, m, map);
+        b.placed(Shape::Cylinder { from: v(-0.7, 0.0, 0.0), to: v(-0.7, 0.6, 0.0), r: 0.2, caps: true }, m, map);
+        b.placed(Shape::Cone { from: v(0.7, 0.0, 0.0), to: v(0.7, 0.6, 0.0), r: 0.3, top: 0.1, caps: true }, m, map);
+        b.placed(Shape::Torus { at: v(0.0, 0.3, 0.0), r: 0.3, tube: 0.1, axis: DVec3::Y }, m, turned);
+        b.placed(Shape::Disc { at: v(0.0, 0.2, 0.6), normal: DVec3::Y, r: 0.2, hole: 0.05 }, m, map);
+        b.light(v(3.0, 4.0, 5.0) * s);
+        b.camera(v(0.3, 1.5, 3.0) * s, v(0.0, 0.2, 0.0) * s, 40.0);
+        b.scene.ambient = Color([0.3; 3]);
+        small(&b.scene)
+    };
+    let here = scene(1.0);
+    for s in [1e-130, 1e-80, 1e-6, 1e-3, 3.7, 1e3, 1e6, 1e9, 1e80, 1e130] {
+        let share = share_that_differs(&here, &scene(s), 2.0);
+        assert!(share <= 5e-4, "{s}: {share}");
+    }
+}
+
 #[test]
 fn the_tree_finds_what_brute_force_finds() {
     // Enough spheres for the tree in every tile; the same scene in tiles of one pixel uses short lists.
@@ -323,7 +350,8 @@ fn probing_names_the_node_and_its_lights() {
     assert!(matches!(scene.node(hit.node).kind, NodeKind::Shape(Shape::Sphere { r: 13.0, .. })));
     assert_eq!(hit.lights.len(), 1);
     assert_eq!(hit.lights[0].1, [1.0; 3]);
-    assert!(((hit.point[2] + 115.0).powi(2) + hit.point[0].powi(2) + hit.point[1].powi(2)).sqrt() - 13.0 < 1e-12);
+    let radius = DVec3::from_array(hit.point).distance(v(0.0, 0.0, -115.0));
+    assert!((radius - 13.0).abs() < 1e-13, "{radius}");
     assert!(probe(&world, &o, 640, 10).is_none(), "the sky");
     let shaded = probe(&world, &o, 640, 520).expect("the lower side of the ball");
     assert_eq!(shaded.lights[0].1, [0.0; 3]);

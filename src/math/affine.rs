@@ -83,8 +83,20 @@ impl Affine {
     }
 
     /// The inverse map, or `None` where the linear part is singular.
+    ///
+    /// Every row is first brought to unit magnitude by a power of two, which is exact, so that products of three entries stay
+    /// in range whatever the scale.
     pub fn inverse(&self) -> Option<Affine> {
-        let m = &self.linear;
+        let mut m = self.linear;
+        let mut powers = [Dd::new(1.0); 3];
+        for (row, power) in m.iter_mut().zip(&mut powers) {
+            let largest = row.iter().fold(0.0, |a: f64, x| if x.hi.abs() > a { x.hi.abs() } else { a });
+            if !(largest >= f64::MIN_POSITIVE && largest.is_finite()) {
+                return None;
+            }
+            *power = Dd::new(reciprocal_power(largest));
+            *row = row.map(|x| x * *power);
+        }
         // Cofactors, each with its indices in cyclic order so that no sign is needed.
         let cof = |r: usize, c: usize| {
             let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
@@ -95,9 +107,9 @@ impl Affine {
             return None;
         }
         let mut out = Affine::IDENTITY;
-        for r in 0..3 {
-            for c in 0..3 {
-                out.linear[r][c] = cof(c, r) / det;
+        for (r, row) in out.linear.iter_mut().enumerate() {
+            for (c, entry) in row.iter_mut().enumerate() {
+                *entry = cof(c, r) / det * powers[c];
             }
         }
         let back = Affine { shift: [Dd::default(); 3], ..out }.apply_dd(self.shift);
@@ -142,6 +154,13 @@ impl Default for Affine {
     }
 }
 
+/// The power of two whose product with a normal x > 0 lies in 1..2 (a half at the very top of the range), from x's exponent
+/// field.
+pub fn reciprocal_power(x: f64) -> f64 {
+    let field = (x.to_bits() >> 52) & 0x7ff;
+    f64::from_bits((2046 - field).max(1) << 52)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,5 +190,8 @@ mod tests {
         let back = a.inverse().unwrap().compose(&a).apply(p);
         assert!(back.distance(p) < 1e-15, "{back}");
         assert_eq!(Affine::scaling(DVec3::new(1.0, 0.0, 1.0)).inverse(), None);
+        let wild = Affine::scaling(DVec3::new(1e130, 1.0, 1e-130));
+        let back = wild.inverse().unwrap().apply(wild.apply(p));
+        assert!(back.distance(p) < 1e-15, "{back}");
     }
 }

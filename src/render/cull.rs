@@ -183,8 +183,8 @@ fn length(a: [f64; 3]) -> f64 {
 /// The box of a batch's points, from their columns.
 pub fn bounds_of<E: crate::math::Elem>(p: &[Box<[E]>; 3], n: usize) -> Bounds {
     let mut b = Bounds::EMPTY;
-    for i in 0..3 {
-        for x in &p[i][..n] {
+    for (i, column) in p.iter().enumerate() {
+        for x in &column[..n] {
             b.lo[i] = smaller(x.to_f64(), b.lo[i]);
             b.hi[i] = larger(x.to_f64(), b.hi[i]);
         }

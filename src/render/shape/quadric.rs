@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn crossings_near_the_origin_keep_relative_accuracy() {
-        let tiny = 2f64.powi(-40);
+        let tiny = 1.0 / (1u64 << 40) as f64;
         let r = roots(&ray([0.0, 0.0, 1.0 - tiny], [0.0, 0.0, 1.0]), &Ball { r: 1.0 });
         assert!((r.hi / tiny - 1.0).abs() < 1e-9, "{}", r.hi);
     }

@@ -5,6 +5,7 @@
 
 use super::{Point, SIDE, Visit};
 use crate::math::Real;
+use crate::math::affine::reciprocal_power;
 use crate::math::fun::sqrt;
 use crate::math::real::{dot, each3, three, two_sum};
 use crate::render::bounds::larger;
@@ -27,13 +28,6 @@ impl Ring {
         let scale = reciprocal_power(r);
         Ring { r: r * scale, tube: tube * scale, scale }
     }
-}
-
-/// The power of two whose product with x > 0 lies in 1..2, from x's exponent field; x is a normal number far from both ends
-/// of the range.
-#[inline(always)]
-fn reciprocal_power(x: f64) -> f64 {
-    f64::from_bits((2046 << 52) - (x.to_bits() & (0x7ff << 52)))
 }
 
 /// Calls `visit(t, part, valid)` for up to four crossings.
@@ -244,9 +238,8 @@ mod tests {
 
     #[test]
     fn scale_is_the_reciprocal_power_of_two() {
-        for (r, scale) in
-            [(1.0, 1.0), (1.9, 1.0), (2.0, 0.5), (0.3, 4.0), (1e140, 2f64.powi(-465)), (1e-140, 2f64.powi(466))]
-        {
+        let power = |n: i64| f64::from_bits(((1023 + n) as u64) << 52);
+        for (r, scale) in [(1.0, 1.0), (1.9, 1.0), (2.0, 0.5), (0.3, 4.0), (1e140, power(-465)), (1e-140, power(466))] {
             assert_eq!(Ring::new(r, r / 2.0).scale, scale, "{r}");
         }
     }
