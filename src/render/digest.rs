@@ -1,7 +1,6 @@
 //! A number for the content of each pattern and material, whatever its place in the text: what makes the order of objects
 //! not matter.
 
-use super::world::content_key;
 use crate::math::hash::KeyedHash;
 use crate::scene::{Filter, Mapping, PatternId, PatternKind, Scene};
 
@@ -19,6 +18,11 @@ pub fn material_digests(scene: &Scene) -> Vec<u64> {
         content_key(slots.into_iter().map(of).chain(rest))
     };
     scene.materials.iter().map(digest).collect()
+}
+
+/// A number that depends on nothing but the given words.
+pub fn content_key(words: impl Iterator<Item = u64>) -> u64 {
+    words.fold(KeyedHash::new(), KeyedHash::with).bits()
 }
 
 fn pattern_digest(scene: &Scene, kind: &PatternKind, before: &[u64]) -> u64 {

@@ -1,9 +1,9 @@
 //! How much of a light arrives: shadow rays, and what transparent objects let through.
 
+use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::Visit;
 use super::surface_pattern::PatternFrame;
-use super::tracer::Candidates;
 use super::world::World;
 use crate::math::real::{Mask, each3, splat3, three};
 use crate::math::{Lane, Real};

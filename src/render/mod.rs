@@ -1,7 +1,7 @@
 //! From scene to film: the world as the tracer sees it, and the tracer.
 //!
 //! [`World::build`] takes from a scene what its picture requires; [`render`] traces it tile by tile; [`probe`] tells what one
-//! pixel sees. Within: `shape/` holds the kernels, one a file, each written once for every scalar; `bvh` and `cull` find
+//! pixel sees. Within: `shape/` holds the kernels, one a file, each written once for every scalar; `bvh`, `cull` and `candidates` find
 //! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
 //! meet.
 
@@ -9,6 +9,7 @@ pub mod batch;
 pub mod bounds;
 pub mod bvh;
 pub mod camera;
+mod candidates;
 pub mod cull;
 mod digest;
 mod dispatch;

@@ -1,12 +1,13 @@
 //! What one pixel sees, in words of the scene: for `rtdsl explain`.
 
 use super::batch::{HitColumns, NONE, RayBatch};
+use super::candidates::Candidates;
 use super::light::{Shadow, occlusion};
 use super::material::Slot;
 use super::options::{Options, Probe};
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::PatternFrame;
-use super::tracer::{Candidates, nearest};
+use super::tracer::nearest;
 use super::world::World;
 use crate::math::real::{Bool, dot, minus, scaled};
 

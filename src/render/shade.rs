@@ -1,6 +1,7 @@
 //! Shades the hits of one object: points and normals first, then light by light, then colour and the rays that follow.
 
 use super::batch::{Column, Column3, RayBatch, column, column3, load3, store3};
+use super::candidates::Candidates;
 use super::cull::{Shaft, bounds_of, margin};
 use super::light::{Shadow, occlusion};
 use super::material::{Slot, Surfacing};
@@ -9,7 +10,6 @@ use super::pattern::{PatternPoint, Rows};
 use super::shape::Primitive;
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::{PatternFrame, bumped};
-use super::tracer::Candidates;
 use super::world::{PointLight, World};
 use crate::math::fun;
 use crate::math::real::{Mask, dot, each3, minus, scaled, splat3, three};

@@ -6,6 +6,7 @@
 use super::bounds::Bounds;
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
+use super::digest::{content_key, material_digests};
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
 use super::pattern::PatternTable;
@@ -13,7 +14,6 @@ use super::place::{Form, Placed, Rescale, place, world_bounds};
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Primitive, TriangleData};
 use crate::math::Affine;
-use crate::math::hash::KeyedHash;
 use crate::render::frame::LinearMap;
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
 use glam::DVec3;
@@ -120,7 +120,7 @@ impl World {
             ambient: scene.ambient.0,
         };
         let numbers = world.compile_materials(scene, &shapes);
-        let digests = super::digest::material_digests(scene);
+        let digests = material_digests(scene);
         let mut entries = Vec::with_capacity(shapes.len());
         for instance in shapes {
             let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
@@ -287,9 +287,4 @@ fn placed_key(p: &Placed, material: u64) -> (u64, u64) {
     }
     let first = content_key(bits.iter().copied());
     (first, content_key(bits.into_iter().rev()))
-}
-
-/// A number that depends on nothing but the given words.
-pub(super) fn content_key(words: impl Iterator<Item = u64>) -> u64 {
-    words.fold(KeyedHash::new(), KeyedHash::with).bits()
 }
