@@ -328,6 +328,35 @@ fn shadows_let_through_what_the_object_transmits() {
     }
 }
 
+/// A lamp that lies in a ceiling, in a face, on a ball: what it shines on is lit throughout, not speckled.
+#[test]
+fn a_light_in_a_surface_shines_without_speckle() {
+    for height in [2.0, 3.0, 3.3] {
+        let at = v(1.0, height, 2.0);
+        for kind in 0..4 {
+            let mut b = Builder::new();
+            let c = b.gray(0.8);
+            let m = b.phong(c, 0.3, 0.0, 0.0);
+            b.shape(Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, m);
+            let surface = match kind {
+                0 => Shape::Plane { through: v(0.0, height, 0.0), normal: DVec3::Y },
+                1 => Shape::Disc { at, normal: DVec3::Y, r: 0.7, hole: 0.0 },
+                2 => Shape::Box { from: at - v(2.0, 0.0, 2.0), to: at + v(2.0, 0.5, 2.0) },
+                _ => Shape::Sphere { at: at + v(0.0, 0.5, 0.0), r: 0.5 },
+            };
+            b.shape(surface, m);
+            b.light(at);
+            b.scene.ambient = Color::BLACK;
+            b.camera(v(0.0, 1.0, 8.0), v(0.5, 0.3, 0.0), 60.0);
+            let film = small(&b.scene);
+            // Below the horizon all is floor, and all of it is lit.
+            let floor = &film.pixels[(60 * film.width) as usize..];
+            let dark = floor.iter().filter(|p| p[0] < 0.01).count();
+            assert_eq!(dark, 0, "surface {kind} at {height}: of {} pixels", floor.len());
+        }
+    }
+}
+
 #[test]
 fn a_glass_ball_of_index_one_is_not_there() {
     let mut b = Builder::new();

@@ -4,6 +4,7 @@ use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::Visit;
 use super::surface_pattern::PatternFrame;
+use super::touch::ButAtTheEnd;
 use super::world::World;
 use crate::math::real::{Mask, each3, splat3, three};
 use crate::math::{Lane, Real};
@@ -16,27 +17,61 @@ pub struct Shadow {
     spaces: Vec<Rows>,
 }
 
-/// The share of light, by channel, that reaches `o` from `distance` away along the unit vector `l`, in the lanes of `active`.
-/// The rays start on `part` of primitive `source`. Every crossing of a transparent surface dims by its transmission; the
-/// factors are multiplied in the order of the primitives' numbers, so that no order of tests changes a bit.
+/// Rays from points of a surface to one light.
+#[derive(Clone, Copy)]
+pub struct ShadowRays<'w, L> {
+    /// The primitive that they start on.
+    pub source: u32,
+    /// The part of it.
+    pub part: L,
+    /// Where they start.
+    pub o: [L; 3],
+    /// Towards the light, of unit length.
+    pub l: [L; 3],
+    /// How far it is.
+    pub distance: L,
+    /// The primitives that the light lies on.
+    pub touched: &'w [u32],
+}
+
+impl<L: Lane> ShadowRays<'_, L> {
+    /// Visits the crossings with primitive `k` that lie between start and light.
+    #[inline(always)]
+    fn crossings(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
+        if self.touched.contains(&k) {
+            return self.crossings_but_the_light(world, k, visit);
+        }
+        world.primitives[k as usize].crossings::<L, false>(world.tables(), self.o, self.l, self.own(k), visit);
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn crossings_but_the_light(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
+        let mut visit = ButAtTheEnd::new(self.distance, visit);
+        world.primitives[k as usize].crossings::<L, false>(world.tables(), self.o, self.l, self.own(k), &mut visit);
+    }
+
+    #[inline(always)]
+    fn own(&self, k: u32) -> Option<Own<L>> {
+        Some(Own { here: L::Mask::splat(k == self.source), part: self.part })
+    }
+}
+
+/// The share of light, by channel, that arrives in the lanes of `active`. Every crossing of a transparent surface dims by its
+/// transmission; the factors are multiplied in the order of the primitives' numbers, so that no order of tests changes a
+/// bit.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
 pub fn occlusion<L: Lane>(
     world: &World,
     occluders: &Candidates,
-    source: u32,
-    part: L,
-    o: [L; 3],
-    l: [L; 3],
-    distance: L,
+    rays: &ShadowRays<'_, L>,
     active: L::Mask,
     scratch: &mut Shadow,
 ) -> [L; 3] {
-    let tables = world.tables();
-    let own = |k: u32| Some(Own { here: L::Mask::splat(k == source), part });
+    let (o, l, distance) = (rays.o, rays.l, rays.distance);
     let mut seen = [L::one(); 3];
     // Opaque ones first: they need no order.
-    let mut open = Open { mask: active, source, part, o, l, distance };
+    let mut open = Open { mask: active, rays };
     scratch.transparent.clear();
     for &k in &occluders.ids {
         open.test(world, k, &mut scratch.transparent);
@@ -62,16 +97,16 @@ pub fn occlusion<L: Lane>(
         match world.constant_transmission(k) {
             Some(factor) => {
                 let mut dimmed = Dimmed { distance, factor: splat3(factor), seen };
-                primitive.crossings::<L, false>(tables, o, l, own(k), &mut dimmed);
+                rays.crossings(world, k, &mut dimmed);
                 seen = dimmed.seen;
             }
             None => {
                 let mut met = Met { distance, crossings: [(zero, zero, L::Mask::splat(false)); 4], n: 0 };
-                primitive.crossings::<L, false>(tables, o, l, own(k), &mut met);
+                rays.crossings(world, k, &mut met);
                 let frame = PatternFrame::new(world, primitive, world.surfacing(k), &mut scratch.spaces);
                 for (t, part, m) in met.crossings.into_iter().take(met.n) {
                     if m.any() {
-                        let surface = primitive.surface::<L, false>(tables, o, l, t, part);
+                        let surface = primitive.surface::<L, false>(world.tables(), o, l, t, part);
                         let at = frame.point(&scratch.spaces, surface.local, surface.n);
                         let factor = frame.transmission(world, &at);
                         seen = three(|c| L::select(m, seen[c] * factor[c], seen[c]));
@@ -84,24 +119,19 @@ pub fn occlusion<L: Lane>(
 }
 
 /// Shadow rays that nothing opaque has stopped yet.
-struct Open<L: Lane> {
+struct Open<'r, L: Lane> {
     mask: L::Mask,
-    source: u32,
-    part: L,
-    o: [L; 3],
-    l: [L; 3],
-    distance: L,
+    rays: &'r ShadowRays<'r, L>,
 }
 
-impl<L: Lane> Open<L> {
+impl<L: Lane> Open<'_, L> {
     /// Tests primitive `k`, or puts it aside where it is transparent.
     #[inline(always)]
     fn test(&mut self, world: &World, k: u32, transparent: &mut Vec<u32>) {
         match world.constant_transmission(k) {
             Some([0.0, 0.0, 0.0]) => {
-                let own = Some(Own { here: L::Mask::splat(k == self.source), part: self.part });
-                let mut met = Blocked { distance: self.distance, blocked: L::Mask::splat(false) };
-                world.primitives[k as usize].crossings::<L, false>(world.tables(), self.o, self.l, own, &mut met);
+                let mut met = Blocked { distance: self.rays.distance, blocked: L::Mask::splat(false) };
+                self.rays.crossings(world, k, &mut met);
                 self.mask = self.mask & !met.blocked;
             }
             Some([1.0, 1.0, 1.0]) => {}
@@ -112,7 +142,7 @@ impl<L: Lane> Open<L> {
     /// How far each ray still has to be followed.
     #[inline(always)]
     fn reach(&self) -> L {
-        L::select(self.mask, self.distance, -L::one())
+        L::select(self.mask, self.rays.distance, -L::one())
     }
 }
 

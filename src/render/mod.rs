@@ -28,6 +28,7 @@ pub mod shape;
 mod surface_pattern;
 mod texture;
 mod tile;
+mod touch;
 mod tracer;
 pub mod world;
 

@@ -2,13 +2,13 @@
 
 use super::batch::{HitColumns, NONE, RayBatch};
 use super::candidates::Candidates;
-use super::light::{Shadow, occlusion};
+use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::Slot;
 use super::options::{Options, Probe};
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::PatternFrame;
 use super::tracer::nearest;
-use super::world::World;
+use super::world::{PointLight, World};
 use crate::math::real::{Bool, dot, minus, scaled};
 
 /// What the ray through the middle of pixel (x, y) sees; `None` for the background.
@@ -41,16 +41,17 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
     };
     let from = spawn_point(surface.p, normal, surface.offset);
     let mut scratch = Shadow::default();
-    let mut arriving = |at: [f64; 3]| {
-        let to = minus(at, from);
+    let mut arriving = |light: &PointLight| {
+        let to = minus(light.at, from);
         let distance = dot(to, to).sqrt();
         let l = scaled(1.0 / distance, to);
         if !(dot(normal, l) > 0.0) {
             return [0.0; 3];
         }
-        occlusion(world, &everything, id, part, from, l, distance, Bool(true), &mut scratch)
+        let rays = ShadowRays { source: id, part, o: from, l, distance, touched: &light.touched };
+        occlusion(world, &everything, &rays, Bool(true), &mut scratch)
     };
-    let lights = world.lights.iter().map(|l| (l.node, arriving(l.at))).collect();
+    let lights = world.lights.iter().map(|l| (l.node, arriving(l))).collect();
     let (node, material) = world.origins[id as usize];
     let point: [f64; 3] = std::array::from_fn(|i| surface.p[i] + world.eye[i]);
     let distance = t * dot(d, d).sqrt();

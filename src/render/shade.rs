@@ -3,10 +3,11 @@
 use super::batch::{Column, Column3, RayBatch, column, column3, load3, store3};
 use super::candidates::Candidates;
 use super::cull::{Shaft, bounds_of, margin};
-use super::light::{Shadow, occlusion};
+use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::{Slot, Surfacing};
 use super::optics::{dielectric, mirrored};
 use super::pattern::{PatternPoint, Rows};
+use super::place::RESIDUE;
 use super::shape::Primitive;
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::{PatternFrame, bumped};
@@ -147,6 +148,8 @@ fn illuminate<L: Lane>(
     let shaft = Shaft::new(&points, light.at, margin(L::UNIT_ROUNDOFF));
     s.occluders.gather(world, |b| shaft.may_meet(b), |n, offset| shaft.may_cross(&points, n, offset));
     let (at, color): ([L; 3], [L; 3]) = (splat3(light.at), splat3(light.color));
+    // A light in this very surface grazes it: what rounding makes of the right angle doesn't count.
+    let least = L::splat(if light.touched.contains(&hits.id) { RESIDUE } else { 0.0 });
     let mut g = 0;
     while g < n_hits {
         let (p, n, ns) = (load3::<L>(&s.p, g), load3::<L>(&s.n, g), load3::<L>(&s.ns, g));
@@ -155,11 +158,12 @@ fn illuminate<L: Lane>(
         let distance = dot(to, to).sqrt();
         let l = scaled(L::one() / distance, to); // NaN for a light exactly here, which no comparison lets through
         let cosine = dot(ns, l);
-        let front = L::zero().lt(dot(n, l)) & L::zero().lt(cosine) & lanes_below::<L>(n_hits - g);
+        let front = least.lt(dot(n, l)) & L::zero().lt(cosine) & lanes_below::<L>(n_hits - g);
         if front.any() {
             *shadow_rays += front.bits().count_ones() as u64;
             let part = L::load(&hits.part[g..]);
-            let seen = occlusion(world, &s.occluders, hits.id, part, o, l, distance, front, &mut s.shadow);
+            let rays = ShadowRays { source: hits.id, part, o, l, distance, touched: &light.touched };
+            let seen = occlusion(world, &s.occluders, &rays, front, &mut s.shadow);
             let zero = L::zero();
             let arrives: [L; 3] = three(|c| L::select(front, color[c] * seen[c], zero));
             let sum = load3::<L>(&s.diffuse, g);

@@ -13,6 +13,7 @@ use super::pattern::PatternTable;
 use super::place::{Form, Placed, Rescale, place, world_bounds};
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Primitive, TriangleData};
+use super::touch::{lies_on, neighbourhood};
 use crate::math::Affine;
 use crate::render::frame::LinearMap;
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
@@ -67,6 +68,8 @@ pub(super) struct Unbounded {
 pub(super) struct PointLight {
     pub(super) at: [f64; 3],
     pub(super) color: [f64; 3],
+    /// The primitives that it lies on.
+    pub(super) touched: Box<[u32]>,
     pub(super) node: NodeId,
 }
 
@@ -95,7 +98,7 @@ impl World {
                 let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
                 let color = (light.color * light.power).0;
                 if color != [0.0; 3] {
-                    lights.push(PointLight { at, color, node: i.node });
+                    lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
                 }
             }
             NodeKind::Shape(_) => shapes.push(i),
@@ -138,6 +141,7 @@ impl World {
             world.add(entry, &numbers, &mut bounded);
         }
         world.bvh = Bvh::build(bounded);
+        world.find_touched_surfaces();
         world
     }
 
@@ -199,6 +203,24 @@ impl World {
         }
         self.primitives.push(Primitive { kind, frame, material, space });
         self.origins.push((instance.node, instance.material));
+    }
+
+    fn find_touched_surfaces(&mut self) {
+        let mut lights = std::mem::take(&mut self.lights);
+        for light in &mut lights {
+            let around = neighbourhood(light.at);
+            let mut near: Vec<u32> = self.unbounded.iter().map(|p| p.id).collect();
+            self.bvh.gather(
+                |b| b.overlaps(&around),
+                |id| {
+                    near.push(id);
+                    true
+                },
+            );
+            near.retain(|&id| lies_on(&self.primitives[id as usize], self.tables(), light.at));
+            light.touched = near.into();
+        }
+        self.lights = lights;
     }
 
     /// The tables that primitives refer to.
