@@ -269,6 +269,10 @@ fn check_reads_many_and_tells_the_worst() {
     let (stdout, _) = desk.expect(1, "check ball.scene wrong.scene");
     assert_eq!(stdout, "ball.scene: ok\n");
     desk.expect(3, "check wrong.scene missing.scene ball.scene");
+    // A file for others to import shows nothing, which is no mistake.
+    fs::write(desk.path("lib.scene"), "export let leaf = sphere()\n").unwrap();
+    let (stdout, stderr) = desk.expect(0, "check lib.scene");
+    assert_eq!((stdout.as_str(), stderr.as_str()), ("lib.scene: ok\n", ""));
     let (stdout, stderr) = desk.expect(1, "check --json ball.scene wrong.scene");
     assert_eq!(stderr, "");
     let all: Value = serde_json::from_str(&stdout).unwrap();

@@ -31,7 +31,8 @@ pub fn run(args: &CheckArgs) -> Result<Exit, Stop> {
         let name = shown_name(file);
         match lang::evaluate(&request(file, &args.set, &args.allow_read)?) {
             Ok(e) => {
-                all.push(report(args, name, Exit::Done, &e.warnings, &e.sources)?);
+                let warnings = if e.is_library { &[] } else { &e.warnings[..] };
+                all.push(report(args, name, Exit::Done, warnings, &e.sources)?);
             }
             Err(f) => {
                 let exit = if f.main_unreadable { Exit::System } else { Exit::Scene };

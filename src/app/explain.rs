@@ -170,6 +170,7 @@ mod tests {
             sources,
             params: Vec::new(),
             warnings: Vec::new(),
+            is_library: false,
             files: Vec::new(),
             parse_seconds: 0.0,
             evaluate_seconds: 0.0,

@@ -66,6 +66,11 @@ impl<'p> Machine<'p> {
         };
         let end = Span { start: span.end - (name.len() as u32).min(span.end), ..span };
         let what = kind_of(of, &self.build);
+        let counted = !matches!(of, Value::Record(_)) && of.length().is_some();
+        if counted && matches!(name.as_str(), "length" | "len" | "size" | "count") {
+            let fault = Fault::new(format!("{what} has no `.{name}`")).label("write `len(…)`");
+            return Err(self.fail(fault.note("as in `len([10, 20, 30])`"), end));
+        }
         let best = nearest(name, names.iter().copied());
         let fault = Fault::new(format!("{what} has no `.{name}`")).label(did_you_mean(best));
         let fault = if names.is_empty() { fault } else { fault.note(format!("it has: {}", names.join(", "))) };

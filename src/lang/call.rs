@@ -4,7 +4,7 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Call, Frame, Machine, word_name};
-use super::suggest::{did_you_mean, nearest_property};
+use super::suggest::property_meant;
 use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
 use super::word::{Default, Run, Word, described};
 use crate::diag::Span;
@@ -90,6 +90,7 @@ impl<'p> Machine<'p> {
             return Err(self.misfits(word, values, span, args));
         }
         self.here = span;
+        self.argument = args.iter().find(|(i, _)| *i == 0).map_or(span, |(_, node)| node.span);
         let result = match &word.run {
             Run::Call(run) => run(self, values),
             Run::Number(_) | Run::Constant(_) | Run::Syntax => Ok(Value::None),
@@ -154,19 +155,31 @@ impl<'p> Machine<'p> {
         Ok(value)
     }
 
-    /// A call of a value.
-    pub fn call_unknown(&mut self, callee: &'p Node, args: &'p [ArgCode], span: Span, frame: Frame<'_>) -> Outcome {
-        let function = self.eval(callee, frame)?;
+    /// A call of a value. `callee` is its text, and `hides` where that is bound if it hides a built-in word.
+    pub fn call_unknown(
+        &mut self,
+        function: &Value,
+        callee: Span,
+        hides: Option<Span>,
+        args: &'p [ArgCode],
+        span: Span,
+        frame: Frame<'_>,
+    ) -> Outcome {
         if !matches!(function, Value::Function(_) | Value::Builtin(_)) {
-            let got = described(&function, &self.build);
-            let fault = Fault::new("only functions can be called").label(format!("this is {got}"));
-            return Err(self.fail(fault, callee.span));
+            let got = described(function, &self.build);
+            let mut fault = Fault::new("only functions can be called").label(format!("this is {got}"));
+            if let Some(bound) = hides {
+                let name = self.sources.text(bound);
+                let note = format!("the built-in one is `std.{name}`; or choose another name here");
+                fault = fault.and_at(bound, "your own value of this name").note(note);
+            }
+            return Err(self.fail(fault, callee));
         }
         let mut values = Vec::with_capacity(args.len());
         for a in args {
             values.push((a.name.clone(), self.eval(&a.value, frame)?));
         }
-        self.call_value(&function, values, span, args)
+        self.call_value(function, values, span, args)
     }
 
     /// A call of a value with values; `args` are their texts, where there are any.
@@ -214,7 +227,7 @@ impl<'p> Machine<'p> {
             let Some(index) = index else {
                 let fault = match &arg {
                     Some(arg) => Fault::new(format!("{the} has no {noun} `{arg}`"))
-                        .label(did_you_mean(nearest_property(arg, names.iter().copied()))),
+                        .label(property_meant(arg, names.iter().copied()).0),
                     None => match params.get(next - 1) {
                         Some((p, _, _)) => {
                             Fault::new(format!("`{p}` of {the} must be named")).label(format!("write `{p}: …`"))

@@ -61,6 +61,8 @@ pub enum Code {
     CallValue {
         callee: Box<Node>,
         args: Box<[ArgCode]>,
+        /// Where the callee's name is bound, if that hides a built-in word.
+        hides: Option<Span>,
     },
     Record(Box<[ArgCode]>),
     Group {

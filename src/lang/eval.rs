@@ -52,7 +52,10 @@ impl<'p> Machine<'p> {
             }
             Code::CallBuiltin { word, args } => self.call_builtin(*word, args, span, frame),
             Code::Call { function, callee, args } => self.call_known(*function, callee.as_deref(), args, span, frame),
-            Code::CallValue { callee, args } => self.call_unknown(callee, args, span, frame),
+            Code::CallValue { callee, args, hides } => {
+                let function = self.eval(callee, frame)?;
+                self.call_unknown(&function, callee.span, *hides, args, span, frame)
+            }
             Code::For(f) => self.for_(f, frame),
             Code::While(w) => {
                 while self.condition(&w.0, frame)? {

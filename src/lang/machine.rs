@@ -35,6 +35,8 @@ pub struct Machine<'p> {
     pub containers: usize,
     /// The call of a built-in word that is running.
     pub here: Span,
+    /// Its first parameter's argument, or the call.
+    pub argument: Span,
     /// Values from the command line by parameter name.
     pub set: HashMap<String, SetValue<'p>>,
     pub params: Vec<Param>,
@@ -245,6 +247,9 @@ impl Host for Machine<'_> {
     }
     fn place(&mut self) -> Place {
         Place { span: self.here, trace: self.trace() }
+    }
+    fn argument(&mut self) -> Span {
+        self.argument
     }
     fn call(&mut self, function: &Value, args: &[Value]) -> Outcome {
         let here = self.here;

@@ -13,6 +13,7 @@ pub mod catalog;
 mod code;
 mod collect;
 mod eval;
+mod expected;
 mod fault;
 mod finish;
 mod limits;
@@ -124,6 +125,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
         text_bytes: 0,
         containers: 0,
         here: Span::new(main, 0..0),
+        argument: Span::new(main, 0..0),
         set,
         params: Vec::new(),
         record_arguments: request.record_arguments,
@@ -140,17 +142,23 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
     if errors.is_empty() {
         errors = finish::finish(&mut build, &mut loader);
     }
+    let exports = resolver.exports.last().is_some_and(|e| !e.names.is_empty());
     let Loader { sources, files, .. } = loader;
     if !errors.is_empty() {
         return Err(Failure { diagnostics: in_order(errors, limits.errors), sources, files, main_unreadable: false });
     }
     let mut warnings = Vec::new();
-    if build.scene.instance_count() == 0 {
+    let is_empty = build.scene.instance_count() == 0;
+    let is_library = is_empty && exports;
+    if is_empty {
         let d = Diagnostic::warning("there is nothing to show").at(Span::new(main, 0..0), "");
-        warnings.push(d.note("the scene has no shapes: add one, such as `sphere()`"));
+        warnings.push(match is_library {
+            true => d.note("this file only exports: import it from a scene"),
+            false => d.note("the scene has no shapes: add one, such as `sphere()`"),
+        });
     }
     let evaluate_seconds = start.elapsed().as_secs_f64();
-    Ok(Evaluated { scene: build.scene, sources, params, warnings, files, parse_seconds, evaluate_seconds })
+    Ok(Evaluated { scene: build.scene, sources, params, warnings, is_library, files, parse_seconds, evaluate_seconds })
 }
 
 type SetNode = (String, String, Span, Result<Node, Diagnostic>);

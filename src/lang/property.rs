@@ -235,8 +235,11 @@ impl Param {
         let fault = Fault::new(message);
         match (self.ty, value) {
             (Ty::Angle, Value::Number(n)) => {
+                // Up to a full turn it may well be meant in radians.
+                let small = n.abs() <= 6.3;
                 let n = number_text(*n);
-                fault.label(format!("write `{n}deg`, or `{n}rad` or `{n}turn`")).fix(format!("{n}deg"))
+                let radians = if small { format!(" or `{n}rad`") } else { String::new() };
+                fault.label(format!("write `{n}deg`{radians}")).fix(format!("{n}deg"))
             }
             (Ty::Number | Ty::Length, Value::Angle(_)) => fault.label("a number has no unit"),
             (Ty::Color | Ty::ColorPaint, Value::Number(n)) => {

@@ -44,6 +44,9 @@ pub struct Evaluated {
     pub params: Vec<Param>,
     /// Things worth a look.
     pub warnings: Diagnostics,
+    /// Whether it shows nothing but exports something: a file for others to import. Its one warning, that there is nothing
+    /// to show, matters only where a picture is wanted.
+    pub is_library: bool,
     /// Every file that was read or looked for, the main one first: what a picture depends on.
     pub files: Vec<PathBuf>,
     /// Seconds spent parsing.

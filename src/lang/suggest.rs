@@ -22,7 +22,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 /// What other scene languages call properties, and what they are called here.
-const SYNONYMS: [(&str, &str); 14] = [
+const SYNONYMS: [(&str, &str); 16] = [
     ("radius", "r"),
     ("center", "at"),
     ("centre", "at"),
@@ -32,6 +32,8 @@ const SYNONYMS: [(&str, &str); 14] = [
     ("target", "at"),
     ("material", "mat"),
     ("colour", "color"),
+    ("color", "mat"),
+    ("colour", "mat"),
     ("roughness", "shininess"),
     ("reflection", "reflect"),
     ("transparency", "transmit"),
@@ -50,8 +52,22 @@ pub fn nearest_property<'a>(word: &str, names: impl Iterator<Item = &'a str> + C
     })
 }
 
+/// What others call the place and size of a shape that lies between two points here.
+const BETWEEN: [&str; 10] =
+    ["at", "height", "h", "length", "center", "centre", "position", "base", "axis", "direction"];
+
+/// What to write for the unknown property `word` of something that has `names`: a label, and a replacement if it is one name.
+pub fn property_meant<'a>(word: &str, names: impl Iterator<Item = &'a str> + Clone) -> (String, Option<&'a str>) {
+    let has = |name| names.clone().any(|n| n == name);
+    if BETWEEN.contains(&word) && has("from") && has("to") && !has("at") {
+        return ("it lies between two points: write `from` and `to`".into(), None);
+    }
+    let best = nearest_property(word, names);
+    (did_you_mean(best), best)
+}
+
 /// What other languages call the words of this one.
-const FOREIGN_WORDS: [(&str, &str); 29] = [
+const FOREIGN_WORDS: [(&str, &str); 30] = [
     ("ball", "sphere"),
     ("cube", "box"),
     ("cuboid", "box"),
@@ -75,12 +91,13 @@ const FOREIGN_WORDS: [(&str, &str); 29] = [
     ("sky", "background"),
     ("material", "phong"),
     ("diffuse", "matte"),
-    ("metal", "mirror"),
     ("texture", "image"),
     ("color", "rgb"),
     ("grey", "gray"),
-    ("log", "ln"),
+    ("colour", "rgb"),
+    ("ln", "log"),
     ("random", "rand"),
+    ("reduce", "fold"),
 ];
 
 /// Like [`nearest`], for what can be used: the names of a scene, nearest scope first, then the words of the language,
@@ -134,6 +151,23 @@ mod tests {
         assert_eq!(nearest_property("raduis", names.into_iter()), Some("r"));
         assert_eq!(nearest_property("centre", names.into_iter()), Some("at"));
         assert_eq!(nearest_property("banana", names.into_iter()), None);
+    }
+
+    #[test]
+    fn foreign_words_lead_to_words_of_the_language() {
+        let words = || crate::lang::catalog::catalog().iter().map(|w| w.name);
+        for (there, here) in FOREIGN_WORDS {
+            assert!(words().any(|w| w == here), "{there} leads to {here}, which isn't a word");
+            assert!(words().all(|w| w != there), "{there} is a word itself");
+        }
+    }
+
+    #[test]
+    fn shapes_between_two_points_have_no_place_of_their_own() {
+        let cylinder = ["from", "to", "r"];
+        let (label, fix) = property_meant("height", cylinder.into_iter());
+        assert_eq!((label.as_str(), fix), ("it lies between two points: write `from` and `to`", None));
+        assert_eq!(property_meant("radius", cylinder.into_iter()).1, Some("r"));
     }
 
     #[test]

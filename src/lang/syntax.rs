@@ -1,5 +1,6 @@
 //! Syntax errors in the language's words: what was expected, and what stands there instead.
 
+use super::expected::expectations;
 use super::parse::Rule;
 use super::suggest::{join_or, nearest};
 use crate::diag::{Diagnostic, FileId, Span};
@@ -212,6 +213,9 @@ impl Unexpected<'_> {
             "fn" if self.expects("parameters") => return Some(as_in(self.plain(), "fn double(x) = 2 * x")),
             _ => {}
         }
+        if let Some(d) = self.several_names() {
+            return Some(d);
+        }
         if self.last_word == "for" || self.expects("`in`") {
             let d = if found == "=" { self.error("expected `in`, found `=`", "write `in`") } else { self.plain() };
             return Some(as_in(d, "for i in 0..10 { … }"));
@@ -219,6 +223,9 @@ impl Unexpected<'_> {
         if found == "=" {
             let name = before.strip_suffix(self.last_word).unwrap_or("").trim_end();
             let argument = !self.last_word.is_empty() && name.ends_with(['(', ',']);
+            if let Some(d) = self.part_assigned() {
+                return Some(d);
+            }
             return Some(match argument {
                 true => as_in(
                     self.error("a named argument is written with `:`", "write `:`").fix(":"),
@@ -240,6 +247,9 @@ impl Unexpected<'_> {
         {
             let name = name.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("");
             return Some(self.error(format!("`{name}` is given no value"), format!("found {}", shown(found))));
+        }
+        if let Some(d) = self.trailing_if() {
+            return Some(d);
         }
         if found.is_empty() && before.ends_with(['+', '-', '*', '/', '^', '=', '<', '>']) {
             return Some(self.error("expected a value, but the statement ends here", ""));
@@ -265,6 +275,50 @@ impl Unexpected<'_> {
             );
         }
         None
+    }
+
+    /// `m.color = red`, where a statement starts.
+    fn part_assigned(&self) -> Option<Diagnostic> {
+        let path = self.before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')).next()?;
+        let lead = self.before.strip_suffix(path)?.trim_end();
+        let (of, part) = path.rsplit_once('.').filter(|(of, _)| !of.is_empty())?;
+        if !(lead.is_empty() || lead.ends_with(['{', ';'])) {
+            return None;
+        }
+        let d = self.error("`=` can't change a part of a value", format!("write `{of}.with({part}: …)`"));
+        Some(d.note(format!("it gives a changed copy: `let changed = {of}.with({part}: …)`")))
+    }
+
+    /// `for i, x in …` and `let (x, z) = …`.
+    fn several_names(&self) -> Option<Diagnostic> {
+        let opens = matches!(self.found, "(" | "[" | "{") && self.expects("a name");
+        // `for (let i = 0; …)` is another mistake.
+        let names = self.rest.split_once([')', ']']).is_some_and(|(names, _)| !names.contains('='));
+        match self.last_word {
+            "let" | "var" if opens => Some(
+                self.error(format!("`{}` binds one name", self.last_word), "several can't be bound at once")
+                    .note("give the list a name and take its items: `let p = …`, then `p[0]` and `p[1]`"),
+            ),
+            last if (last == "for" && opens && names) || (self.found == "," && self.expects("`in`")) => Some(
+                self.error("`for` binds one name", "several can't be bound at once")
+                    .note("as in `for p in enumerate(xs) { … p[0] … p[1] … }`: the position and the value there"),
+            ),
+            _ => None,
+        }
+    }
+
+    /// `a if c else b`.
+    fn trailing_if(&self) -> Option<Diagnostic> {
+        if self.found != "if" || self.before.is_empty() {
+            return None;
+        }
+        let (condition, _) = self.rest.strip_prefix("if")?.split_once(" else ")?;
+        let condition = condition.trim();
+        if condition.is_empty() || condition.contains(['{', ';']) {
+            return None;
+        }
+        let d = self.error("an `if` starts with its condition", "the value of each case stands in `{ }`");
+        Some(d.note(format!("as in `if {condition} {{ a }} else {{ b }}`")))
     }
 
     /// What was expected, and what stands there.
@@ -316,53 +370,4 @@ fn shown(found: &str) -> String {
         word if KEYWORDS.contains(&word) => format!("the word `{word}`"),
         other => format!("`{other}`"),
     }
-}
-
-/// What could have stood there, in words; the most telling ones only.
-fn expectations(rules: &[Rule]) -> Vec<String> {
-    let has = |r: Rule| rules.contains(&r);
-    let closers: Vec<String> = [
-        (Rule::comma, "`,`"),
-        (Rule::close_paren, "a closing `)`"),
-        (Rule::close_bracket, "a closing `]`"),
-        (Rule::close_brace, "a closing `}`"),
-    ]
-    .into_iter()
-    .filter(|(r, _)| has(*r))
-    .map(|(_, w)| w.to_owned())
-    .collect();
-    let value = [Rule::expr, Rule::true_, Rule::prefix, Rule::color, Rule::digits].into_iter().any(has);
-    let mut out = Vec::new();
-    if value {
-        out.push("a value".to_owned());
-        if !has(Rule::comma) {
-            out.extend(closers);
-        }
-        return out;
-    }
-    let others = [
-        (Rule::ident, "a name"),
-        (Rule::equals, "`=`"),
-        (Rule::colon, "`:`"),
-        (Rule::kw_let, "`let`"),
-        (Rule::kw_fn, "`fn`"),
-        (Rule::kw_in, "`in`"),
-        (Rule::kw_as, "`as`"),
-        (Rule::params, "parameters in `( )`"),
-        (Rule::block, "a block in `{ }`"),
-        (Rule::import_names, "names in `{ }`"),
-        (Rule::text, "a text in quotes"),
-    ];
-    out.extend(others.into_iter().filter(|(r, _)| has(*r)).map(|(_, w)| w.to_owned()));
-    out.extend(closers);
-    if has(Rule::kw_as) && has(Rule::open_brace) {
-        out.push("names in `{ }`".into());
-    }
-    if has(Rule::open_brace) && !out.iter().any(|w| w.contains("{ }")) {
-        out.push("a block in `{ }`".into());
-    }
-    if out.is_empty() && (has(Rule::operator) || has(Rule::arrow)) {
-        out.push("an operator or the end of the statement".into());
-    }
-    out
 }

@@ -11,6 +11,8 @@ pub enum Ty {
     Any,
     /// A number.
     Number,
+    /// A number or an angle.
+    Quantity,
     /// A whole number.
     Whole,
     /// A number that geometry is made of.
@@ -70,9 +72,9 @@ impl Ty {
     pub(super) fn takes(self, value: &Value, build: &Build) -> bool {
         match (self, value) {
             (Ty::Any, _) => true,
-            (Ty::Number | Ty::Length, Value::Number(_)) => true,
+            (Ty::Number | Ty::Length | Ty::Quantity, Value::Number(_)) => true,
             (Ty::Whole, Value::Number(n)) => n.fract() == 0.0,
-            (Ty::Angle, Value::Angle(_)) => true,
+            (Ty::Angle | Ty::Quantity, Value::Angle(_)) => true,
             (Ty::Point | Ty::Direction | Ty::Factors, Value::Vec3(_)) | (Ty::Factors, Value::Number(_)) => true,
             (Ty::Points(n) | Ty::Directions(n), Value::List(items)) => {
                 items.len() == n && items.iter().all(|v| matches!(v, Value::Vec3(_)))
@@ -107,6 +109,7 @@ impl Ty {
         match self {
             Ty::Any => "any value".into(),
             Ty::Number | Ty::Length => "a number".into(),
+            Ty::Quantity => "a number or an angle".into(),
             Ty::Whole => "a whole number".into(),
             Ty::Angle => "an angle".into(),
             Ty::Point => "a point `[x, y, z]`".into(),

@@ -3,7 +3,7 @@
 use super::build::Build;
 use super::fault::{Fault, Outcome, Stop};
 use super::value::Value;
-use crate::diag::Place;
+use crate::diag::{Place, Span};
 
 pub(super) use super::args::Args;
 pub use super::property::{Bounds, Default, Param, optional, required, rest};
@@ -109,6 +109,8 @@ pub(super) trait Host {
     fn build(&mut self) -> &mut Build;
     /// The call and the calls around it.
     fn place(&mut self) -> Place;
+    /// The first parameter's argument, or the call where that can't be told.
+    fn argument(&mut self) -> Span;
     /// Calls a function value by position.
     fn call(&mut self, function: &Value, args: &[Value]) -> Outcome;
     /// Uses up `n` of the budget of steps.

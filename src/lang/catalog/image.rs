@@ -16,7 +16,7 @@ pub const WORDS: &[Word] = &[Word {
             "mapping",
             Ty::Choice(&["spherical", "normal", "planar", "cylindrical"]),
             Default::Text("spherical"),
-            "how it is laid on",
+            "how it is laid on; a planar picture is one unit wide and high unless `scale` makes it larger",
         ),
         optional(
             "filter",
@@ -27,7 +27,7 @@ pub const WORDS: &[Word] = &[Word {
         optional("axis", AXES, Default::Absent, "the direction of a planar mapping, \"z\" unless given"),
     ],
     doc: "A picture from a file, laid on by longitude and latitude, by the surface's direction, flat, or round the y axis.",
-    example: "sphere(mat: matte(image(\"assets/earth.png\") |> rotate(y: 100deg)))\nlight(at: [4, 8, 6])",
+    example: "sphere(mat: matte(image(\"assets/earth.png\") |> rotate(y: 100deg)))\nplane(z: -2, mat: matte(image(\"assets/earth.png\", mapping: \"planar\") |> scale([4, 2, 1])))\nlight(at: [4, 8, 6])",
     run: Run::Call(image),
 }];
 
@@ -43,7 +43,8 @@ fn image(host: &mut dyn Host, a: &[Value]) -> Outcome {
         _ => Mapping::Spherical,
     };
     let filter = if a.text(2) == "nearest" { Filter::Nearest } else { Filter::Bilinear };
-    let span = host.place().span;
+    // What is wrong with the picture is shown at its name.
+    let span = host.argument();
     let image = host.build().image(PictureFile { path: a.text(0).into(), file: span.file, span });
     add(host, PatternKind::Image { image, mapping, filter })
 }

@@ -20,8 +20,13 @@ pub const SLOTS: &[Param] = &[
     optional("reflect", Ty::Paint, Default::Number(D::REFLECT), "how much it mirrors").at_least(0.0),
     optional("transmit", Ty::Paint, Default::Number(D::TRANSMIT), "how much of what lies behind it shows through")
         .at_least(0.0),
-    optional("ior", Ty::Number, Default::Absent, "how strongly it bends light: 1.33 for water, 1.5 for glass")
-        .within(1.0, 10.0),
+    optional(
+        "ior",
+        Ty::Number,
+        Default::Absent,
+        "how strongly it bends light against the air around it: 1.33 for water, 1.5 for glass",
+    )
+    .within(1.0, 10.0),
     optional("bump", Ty::NumberPaint, Default::Absent, "a height in scene units that roughens it"),
 ];
 
@@ -89,7 +94,8 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Material,
         params: &[
             optional("tint", Ty::Paint, Default::Number(1.0), "the color of what shows through").at_least(0.0),
-            optional("ior", Ty::Number, Default::Number(1.5), "how strongly it bends light").within(1.0, 10.0),
+            optional("ior", Ty::Number, Default::Number(1.5), "how strongly it bends light against the air around it")
+                .within(1.0, 10.0),
         ],
         doc: "Clear or colored glass, which bends light and mirrors at its edges.",
         example: "sphere(mat: glass(tint: #8fc))\nplane(y: -1, mat: matte(checker(white, black)))\nlight(at: [4, 8, 6])",

@@ -1,7 +1,7 @@
 //! Numbers.
 
 use crate::lang::ast::Op;
-use crate::lang::fault::{Fault, Outcome};
+use crate::lang::fault::{Fault, Outcome, Stop};
 use crate::lang::ops;
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Host, Kind, Param, Run, Ty, Word, required, rest};
@@ -9,7 +9,8 @@ use crate::math::fun;
 use std::f64::consts;
 
 const X: Param = required("x", Ty::Number, "a number");
-const MORE: Param = rest("more", Ty::Number, "further numbers");
+const QUANTITY: Param = required("x", Ty::Quantity, "a number or an angle");
+const MORE: Param = rest("more", Ty::Quantity, "further ones of the same kind");
 const LOW: Param = required("low", Ty::Number, "the lower limit");
 const HIGH: Param = required("high", Ty::Number, "the upper limit");
 
@@ -24,7 +25,14 @@ const fn constant(name: &'static str, value: fn() -> Value, doc: &'static str, e
 }
 
 pub const WORDS: &[Word] = &[
-    function("abs", f64::abs, "A number without its sign.", "let two = abs(-2)     // → 2"),
+    Word {
+        name: "abs",
+        kind: Kind::Maths,
+        params: &[QUANTITY],
+        doc: "A number or angle without its sign.",
+        example: "let two = abs(-2)     // → 2",
+        run: Run::Call(|_, a| Ok(kind(a)?(a.number(0).abs()))),
+    },
     function("sign", sign, "1, 0 or -1 for a number above, at or below 0.", "let below = sign(-7)      // → -1"),
     function("floor", f64::floor, "The next whole number below.", "let below = floor(-1.5)       // → -2"),
     function("ceil", f64::ceil, "The next whole number above.", "let above = ceil(1.1)     // → 2"),
@@ -59,31 +67,36 @@ pub const WORDS: &[Word] = &[
     Word {
         name: "min",
         kind: Kind::Maths,
-        params: &[X, MORE],
-        doc: "The smallest of some numbers.",
+        params: &[QUANTITY, MORE],
+        doc: "The smallest of some numbers, or of some angles.",
         example: "let one = min(3, 1, 2)        // → 1",
-        run: Run::Call(|_, a| Ok(Value::Number(fold(a, |x, y| if y < x { y } else { x })))),
+        run: Run::Call(|_, a| Ok(kind(a)?(fold(a, |x, y| if y < x { y } else { x })))),
     },
     Word {
         name: "max",
         kind: Kind::Maths,
-        params: &[X, MORE],
-        doc: "The largest of some numbers.",
+        params: &[QUANTITY, MORE],
+        doc: "The largest of some numbers, or of some angles.",
         example: "let three = max(3, 1, 2)      // → 3",
-        run: Run::Call(|_, a| Ok(Value::Number(fold(a, |x, y| if y > x { y } else { x })))),
+        run: Run::Call(|_, a| Ok(kind(a)?(fold(a, |x, y| if y > x { y } else { x })))),
     },
     Word {
         name: "clamp",
         kind: Kind::Maths,
-        params: &[X, LOW, HIGH],
-        doc: "A number brought within two limits.",
-        example: "let one = clamp(7, 0, 1)      // → 1",
+        params: &[
+            QUANTITY,
+            required("low", Ty::Quantity, "the lower limit, of the same kind"),
+            required("high", Ty::Quantity, "the upper limit, of the same kind"),
+        ],
+        doc: "A number or angle brought within two limits.",
+        example: "let one = clamp(7, 0, 1)      // → 1\nlet tilt = clamp(50deg, -30deg, 30deg)      // → 30deg",
         run: Run::Call(|_, a| {
+            let kind = kind(a)?;
             let (x, low, high) = (a.number(0), a.number(1), a.number(2));
             if low > high {
                 return Err(Fault::new("`low` is above `high`").on(1).into());
             }
-            Ok(Value::Number(x.clamp(low, high)))
+            Ok(kind(x.clamp(low, high)))
         }),
     },
     Word {
@@ -131,6 +144,21 @@ fn sign(x: f64) -> f64 {
         -1.0
     } else {
         0.0
+    }
+}
+
+/// What makes a value of the kind that all of `a` are: numbers, or angles.
+fn kind(a: &[Value]) -> Result<fn(f64) -> Value, Stop> {
+    let is_angle = |v: &Value| matches!(v, Value::Angle(_));
+    let angles = a.first().is_some_and(is_angle);
+    match a.iter().position(|v| !matches!(v, Value::Unset) && is_angle(v) != angles) {
+        Some(odd) => {
+            let (got, others) = if angles { ("a number", "angles") } else { ("an angle", "numbers") };
+            let fault = Fault::new(format!("numbers and angles can't be compared: this is {got} among {others}"));
+            Err(fault.note("an angle carries its unit: `30deg`, `0.5turn`, `1.2rad`").on(odd).into())
+        }
+        None if angles => Ok(Value::Angle),
+        None => Ok(Value::Number),
     }
 }
 

@@ -12,7 +12,7 @@ pub const WORDS: &[Word] = &[
     Word {
         name: "length",
         kind: Kind::Vector,
-        params: &[V],
+        params: &[required("v", Ty::Point, "a vector `[x, y, z]`; how many values a list has is `len(…)`")],
         doc: "The length of a vector.",
         example: "let five = length([3, 4, 0])      // → 5",
         run: Run::Call(|_, a| Ok(Value::Number(length(a.vec3(0))))),

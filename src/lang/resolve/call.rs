@@ -6,8 +6,8 @@ use crate::lang::ast::*;
 use crate::lang::catalog;
 use crate::lang::code::*;
 use crate::lang::scope::{Access, Kind};
-use crate::lang::suggest::{did_you_mean, nearest_property};
-use crate::lang::value::{BuiltinId, FunctionId};
+use crate::lang::suggest::property_meant;
+use crate::lang::value::{BuiltinId, FunctionId, Value};
 use crate::lang::word::{self, Run};
 use ecow::EcoString;
 
@@ -54,9 +54,13 @@ impl Resolver {
                 _ => {}
             }
         }
+        let hides = match &callee.kind {
+            ExprKind::Name(name) if catalog::find(name).is_some() => self.scopes.find(name).map(|(_, b, _)| b.span),
+            _ => None,
+        };
         let callee = self.boxed(callee);
         let args = args.iter().map(|a| self.arg(a)).collect();
-        Code::CallValue { callee, args }
+        Code::CallValue { callee, args, hides }
     }
 
     /// Arguments of something unknown: their own mistakes are reported all the same.
@@ -189,7 +193,7 @@ impl Resolver {
             let node = self.expr(&a.value, Mode::Value);
             let index = match &a.name {
                 Some(name) => self.named(f, name),
-                None => self.by_position(f, &mut next, node.span),
+                None => self.by_position(f, &mut next, &node),
             };
             let Some(index) = index else { continue };
             let here = a.name.as_ref().map_or(node.span, |n| n.span);
@@ -221,9 +225,9 @@ impl Resolver {
         if let Some(i) = f.params.iter().position(|p| p.name == name.name && !p.rest) {
             return Some(i);
         }
-        let best = nearest_property(&name.name, f.params.iter().map(|p| p.name));
+        let (label, best) = property_meant(&name.name, f.params.iter().map(|p| p.name));
         let d = Diagnostic::error(format!("`{}` has no {} `{}`", f.name, f.noun, name.name))
-            .at(name.span, did_you_mean(best))
+            .at(name.span, label)
             .note(f.takes.clone());
         self.errors.push(match best {
             Some(b) => d.fix(b),
@@ -232,7 +236,8 @@ impl Resolver {
         None
     }
 
-    fn by_position(&mut self, f: &Signature<'_>, next: &mut usize, span: Span) -> Option<usize> {
+    fn by_position(&mut self, f: &Signature<'_>, next: &mut usize, arg: &Node) -> Option<usize> {
+        let span = arg.span;
         let index = *next;
         *next += 1;
         match f.params.get(index) {
@@ -241,6 +246,15 @@ impl Resolver {
             _ => {}
         }
         let d = match f.params.get(index) {
+            Some(_)
+                if let Code::Const(angle @ Value::Angle(_)) = &arg.code
+                    && f.noun == "property"
+                    && f.name == "rotate" =>
+            {
+                let a = angle.show(40);
+                Diagnostic::error("`rotate` turns about an axis, which must be named")
+                    .at(span, format!("write `x: {a}`, `y: {a}` or `z: {a}`"))
+            }
             Some(p) => Diagnostic::error(format!("`{}` of `{}` must be named", p.name, f.name))
                 .at(span, format!("write `{}: …`", p.name)),
             None => Diagnostic::error(format!("`{}` has too many arguments", f.name)).at(span, "this one is too much"),
