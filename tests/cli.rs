@@ -238,6 +238,10 @@ fn the_command_line_wins() {
     assert!((5..15).contains(&red), "a small ball: {red} pixels");
     desk.expect(1, "render ball.scene --set radius=3");
     desk.expect(1, "render ball.scene --set raduis=1");
+    std::fs::write(desk.path("far.scene"), "sphere(at: [0, 0, 1e30], r: 1e29)\nlight(at: [0, 1, 0])\n").unwrap();
+    desk.expect(0, "render far.scene --size 4x3");
+    let (_, stderr) = desk.expect(1, "render far.scene --size 4x3 --precision f32");
+    assert!(stderr.contains("32-bit") && stderr.contains("far.scene:1:1"), "{stderr}");
     desk.expect(0, "render ball.scene --camera top --precision f32 --max-depth 0 --aa grid:3 -o top.png");
 }
 

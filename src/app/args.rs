@@ -82,7 +82,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub view: ViewArgs,
     /// Make only this part of the picture, in pixels from its top left corner.
-    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop, allow_hyphen_values = true)]
     pub crop: Option<Crop>,
     /// Worker threads; never changes the picture. [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]

@@ -10,6 +10,7 @@ use crate::diag::Diagnostic;
 use crate::film::{self, Depth, Film, Format, OutputFile, Recipe, recipe};
 use crate::lang::Evaluated;
 use crate::render::{self, Rendered, World};
+use crate::scene::Precision;
 use std::io::{self, Cursor, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -41,6 +42,16 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let world_start = Instant::now();
     let world = World::build(&evaluated.scene, camera);
     let world_seconds = world_start.elapsed().as_secs_f64();
+    if options.precision == Precision::F32
+        && let Some(node) = world.beyond_f32()
+    {
+        let place = evaluated.scene.node(node).place.clone();
+        let d = Diagnostic::error("this shape is too large, too small or too far away for 32-bit numbers")
+            .at(place.span, "leave out `precision: \"f32\"` or `--precision f32`")
+            .note("with 32 bits, sizes and distances from the camera are 0 or from 1e-18 to 1e18")
+            .from_place(place);
+        return Err(Stop::scene(d, &evaluated.sources));
+    }
 
     let render_start = Instant::now();
     let part = options.crop_or_all();

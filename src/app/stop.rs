@@ -32,6 +32,11 @@ impl Stop {
         Stop { exit: Exit::Usage, diagnostics: vec![d], sources: Sources::new() }
     }
 
+    /// The scene asks for something that can't be drawn as it is.
+    pub fn scene(d: Diagnostic, sources: &Sources) -> Stop {
+        Stop { exit: Exit::Scene, diagnostics: vec![d], sources: sources.clone() }
+    }
+
     /// `what` failed for the reason that the system gives.
     pub fn system(what: impl Into<String>, e: io::Error) -> Stop {
         Stop {

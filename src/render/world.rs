@@ -3,7 +3,7 @@
 //! Primitives and lights are numbered by their content, not by their place in the text. So the order of objects in the text
 //! never changes a pixel: where two surfaces coincide exactly, the same one is always in front.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
 use super::digest::{content_key, material_digests};
@@ -16,6 +16,7 @@ use super::shape::{Kind, Primitive, TriangleData};
 use super::touch::{lies_on, neighbourhood};
 use crate::math::Affine;
 use crate::render::frame::LinearMap;
+use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
 use glam::DVec3;
 
@@ -233,6 +234,28 @@ impl World {
     #[inline(always)]
     pub(super) fn surfacing(&self, id: u32) -> &Surfacing {
         &self.materials[self.primitives[id as usize].material as usize]
+    }
+
+    /// The first surface, in the order of the text, whose size or place `f32` can't hold: tracing it so would draw something
+    /// else. See [`range`](crate::scene::range).
+    pub fn beyond_f32(&self) -> Option<NodeId> {
+        let holds = |x: f64| x == 0.0 || (SMALLEST_F32..=LARGEST_F32).contains(&x.abs());
+        let fits = |p: &Primitive| match &p.kind {
+            Kind::Sphere(r) => holds(*r),
+            Kind::Plane => true,
+            Kind::Disc { r, hole } => holds(*r) && holds(*hole),
+            Kind::Cuboid(half) => half.iter().all(|h| holds(*h)),
+            Kind::Tube(t) => [t.radius, t.bottom, t.top].into_iter().all(holds),
+            Kind::Ring(ring) => holds(ring.tube / ring.scale),
+            Kind::Triangle(i) => {
+                let [a, b, c] = self.triangles[*i as usize].v;
+                let edge = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).abs()).fold(0.0, larger);
+                holds(edge(a, b)) && holds(edge(a, c))
+            }
+        };
+        let near = |p: &Primitive| p.frame.centre.iter().all(|x| x.abs() <= LARGEST_F32);
+        let misfit = |i: &usize| !(fits(&self.primitives[*i]) && near(&self.primitives[*i]));
+        (0..self.primitives.len()).filter(misfit).map(|i| self.origins[i].0).min()
     }
 
     /// Surfaces there are.

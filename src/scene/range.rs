@@ -4,6 +4,10 @@
 pub const LARGEST: f64 = 1e140;
 /// Smallest supported magnitude that isn't 0: its square, 1e-280, is far above the smallest normal `f64`, 2.2e-308.
 pub const SMALLEST: f64 = 1e-140;
+/// Largest magnitude that `f32` tracing holds: squares stay below 3.4e38 with room for a few additions.
+pub const LARGEST_F32: f64 = 1e18;
+/// Smallest magnitude other than 0 that `f32` tracing holds: squares stay above the smallest normal number, 1.2e-38.
+pub const SMALLEST_F32: f64 = 1e-18;
 /// Widest and highest picture, in pixels: a row still fits the 32-bit sizes of picture files many times over.
 pub const LARGEST_SIDE: u32 = 65_536;
 /// Most pixels of a picture: 2^28, 3.2 GB of linear colours.

@@ -27,7 +27,12 @@ pub const SLOTS: &[Param] = &[
         "how strongly it bends light against the air around it: 1.33 for water, 1.5 for glass",
     )
     .within(1.0, 10.0),
-    optional("bump", Ty::NumberPaint, Default::Absent, "a height in scene units that roughens it"),
+    optional(
+        "bump",
+        Ty::NumberPaint,
+        Default::Absent,
+        "a height that roughens it, in units of the space in which the shape is made; its slope tilts the normal, so a pattern with steps, such as `checker`, does nothing",
+    ),
 ];
 
 pub const WORDS: &[Word] = &[

@@ -111,7 +111,7 @@ pub const WORDS: &[Word] = &[
             optional("gap", Ty::Length, Default::Number(0.1), "the thickness of the mortar").at_least(0.0),
         ],
         doc: "A brick wall, courses along x laid up y, every other one shifted by half a brick; the same at every z.",
-        example: "let wall = brick(firebrick, lightgray, size: [0.6, 0.25], gap: 0.04)\nplane(z: 0, mat: phong(color: wall, bump: brick(0.02, 0, size: [0.6, 0.25], gap: 0.04)))\nlight(at: [4, 8, 6])",
+        example: "let wall = brick(firebrick, lightgray, size: [0.6, 0.25], gap: 0.04)\nplane(z: 0, mat: matte(wall))\nlight(at: [4, 8, 6])",
         run: Run::Call(|host, a| {
             let [brick, mortar] = paints(host, a);
             let size = [a.item(2, 0), a.item(2, 1)];

@@ -66,9 +66,9 @@ pub const WORDS: &[Word] = &[
                 Default::Absent,
                 "`off`: one ray a pixel; `grid(n)`: n × n rays, averaged",
             ),
-            optional("depth", Ty::Whole, Default::Number(8.0), "how many mirrors and glasses a ray may go through")
+            optional("depth", Ty::Whole, Default::Number(8.0), "how many mirrors and glasses a ray may go through; glass sends two rays on from each surface, so each level may double the time")
                 .within(0.0, Settings::LARGEST_DEPTH as f64),
-            optional("precision", Ty::Choice(&["f64", "f32"]), Default::Text("f64"), "the arithmetic: 64 or 32 bits"),
+            optional("precision", Ty::Choice(&["f64", "f32"]), Default::Text("f64"), "the arithmetic: 64 or 32 bits; 32 bits hold lengths from 1e-18 to 1e18"),
         ],
         doc: "How large and how good the picture is.",
         example: "sphere()\nlight(at: [4, 8, 6])\nrender(size: [320, 200], aa: grid(2), depth: 5)",
