@@ -100,6 +100,15 @@ impl Unexpected<'_> {
             let here = self.span(start, start + sign.len());
             return Some(Diagnostic::error(format!("`{sign}` isn't an operator")).at(here, label).fix(meant));
         }
+        // Alone, a `#` is the comment of other languages.
+        let hash = match self.before.strip_suffix('#') {
+            Some(before) if !adjacent => Some(before.len()),
+            _ => self.rest.starts_with("# ").then_some(self.at),
+        };
+        if let Some(start) = hash {
+            let here = self.span(start, start + 1);
+            return Some(Diagnostic::error("`#` starts a color, not a comment").at(here, "write `//`").fix("//"));
+        }
         let first = self.rest.chars().next()?;
         Some(match first {
             '!' => self.error("`!` isn't an operator", "write `not`").fix("not "),
