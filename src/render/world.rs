@@ -258,11 +258,6 @@ impl World {
         (0..self.primitives.len()).filter(misfit).map(|i| self.origins[i].0).min()
     }
 
-    /// Surfaces there are.
-    pub fn primitive_count(&self) -> usize {
-        self.primitives.len()
-    }
-
     /// Bytes held for tracing.
     pub fn memory_bytes(&self) -> usize {
         self.primitives.len() * (size_of::<Primitive>() + size_of::<(NodeId, MaterialId)>())

@@ -132,11 +132,6 @@ impl Primitive {
             local: point.p,
         }
     }
-
-    /// Whether all of it lies in one plane, y = 0 of its frame.
-    pub fn is_flat(&self) -> bool {
-        matches!(self.kind, Kind::Plane | Kind::Disc { .. } | Kind::Triangle(_))
-    }
 }
 
 /// The origin of a ray that leaves `p` on the side of `n` for a positive `offset`, on the other for a negative one.
