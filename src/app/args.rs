@@ -5,12 +5,14 @@ use crate::render::Crop;
 use crate::scene::{AntiAliasing, Precision, Settings, range};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
+use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Pictures written as text: reads a scene and ray-traces its picture.
 #[derive(Debug, Parser)]
 #[command(name = "rtdsl", version, disable_help_subcommand = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 the scene is wrong, 2 usage, 3 files or system.")]
+#[command(after_help = "Exit codes: 0 done, 1 the scene is wrong, 2 usage, 3 files or system, 4 pictures differ.")]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -22,6 +24,10 @@ pub struct Cli {
 pub enum Command {
     /// Make the picture of a scene.
     Render(RenderArgs),
+    /// Make the picture again whenever the scene changes, in the terminal and on a live page.
+    Watch(WatchArgs),
+    /// Make the pictures of a folder of scenes, and pages that show them with their text.
+    Gallery(GalleryArgs),
     /// Look for mistakes without making a picture.
     Check(CheckArgs),
     /// Say what the renderer does for a scene and why, or what a pixel sees.
@@ -98,6 +104,74 @@ pub struct RenderArgs {
     pub quiet: bool,
 }
 
+/// `rtdsl watch`.
+#[derive(Debug, Args)]
+pub struct WatchArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Picture file: .png, .exr (linear) or .hdr (linear). It only ever holds finished pictures. [default: FILE's name with
+    /// .png, in the current folder; none with `--serve`]
+    #[arg(short, long, value_name = "OUT")]
+    pub out: Option<PathBuf>,
+    /// The view.
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Show the picture on a live page: at ADDR, or on this machine alone at any free port.
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", value_parser = address)]
+    pub serve: Option<SocketAddr>,
+    /// Open the live page in the browser.
+    #[arg(long)]
+    pub open: bool,
+    /// Look at the files every so many seconds instead of waiting for the system to tell: for network file systems.
+    #[arg(long, value_name = "SECONDS", value_parser = poll_interval)]
+    pub poll: Option<Duration>,
+    /// Worker threads; never changes the picture. [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// Bits of a channel in a PNG.
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bits)]
+    pub bits: Depth,
+    /// Print an object a line on standard output: what changed, what was made, what is wrong.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `rtdsl gallery`.
+#[derive(Debug, Args)]
+pub struct GalleryArgs {
+    /// Folder with scenes; those in folders within it too.
+    #[arg(value_name = "DIR", default_value = "examples")]
+    pub dir: PathBuf,
+    /// Folder for pictures and pages. [default: `gallery`, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub out: Option<PathBuf>,
+    /// Make nothing: render, compare with the pictures in OUT, and end with 4 where one differs.
+    #[arg(long)]
+    pub check: bool,
+    /// Only scenes whose path in DIR this pattern matches, as in `chess*`.
+    #[arg(long, value_name = "GLOB", value_parser = glob_pattern)]
+    pub only: Option<glob::Pattern>,
+    /// Scenes rendered at the same time. [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub jobs: Option<u32>,
+    /// Pixels across of every picture; the height keeps the scene's proportion. [default: the scene's own size]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=range::LARGEST_SIDE as i64))]
+    pub width: Option<u32>,
+    /// Rays a pixel: `off` for one, `grid:N` for N x N. [default: the scene's own]
+    #[arg(long, value_name = "off|grid:N", value_parser = anti_aliasing)]
+    pub aa: Option<AntiAliasing>,
+    /// Let the scenes read files in this folder too.
+    #[arg(long, value_name = "DIR")]
+    pub allow_read: Vec<PathBuf>,
+    /// Print the summary as JSON on standard output.
+    #[arg(long)]
+    pub json: bool,
+    /// Print errors alone.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
 /// `rtdsl check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -164,14 +238,19 @@ pub enum StatsForm {
     Json,
 }
 
-/// `--stats FILE` means `--stats=text FILE`: an optional value must not swallow the argument after it.
-pub fn with_stats_value(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+/// `--stats FILE` means `--stats=text FILE`: an optional value must not swallow the argument after it. So `--serve`.
+pub fn with_optional_values(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let end_of_options = arguments.iter().position(|a| a == "--").unwrap_or(arguments.len());
     let is_form = |a: &OsString| a == "text" || a == "json";
+    let is_address = |a: &OsString| a.to_str().is_some_and(|a| address(a).is_ok());
     let mend = |(i, a): (usize, &OsString)| {
-        let alone = i < end_of_options && a == "--stats" && !arguments.get(i + 1).is_some_and(is_form);
-        if alone { "--stats=text".into() } else { a.clone() }
+        let next = arguments.get(i + 1);
+        match a.to_str() {
+            Some("--stats") if i < end_of_options && !next.is_some_and(is_form) => "--stats=text".into(),
+            Some("--serve") if i < end_of_options && !next.is_some_and(is_address) => "--serve=127.0.0.1:0".into(),
+            _ => a.clone(),
+        }
     };
     arguments.iter().enumerate().map(mend).collect()
 }
@@ -216,6 +295,31 @@ fn precision(s: &str) -> Result<Precision, String> {
     }
 }
 
+/// `8000`, `127.0.0.1`, `[::1]:8000`, `localhost:8000`.
+fn address(s: &str) -> Result<SocketAddr, String> {
+    let here = std::net::Ipv4Addr::LOCALHOST;
+    let s = s.replace("localhost", "127.0.0.1");
+    if let Ok(port) = s.parse::<u16>() {
+        return Ok((here, port).into());
+    }
+    if let Ok(ip) = s.parse::<std::net::IpAddr>() {
+        return Ok((ip, 0).into());
+    }
+    s.parse().map_err(|_| "write an address and a port, as in `127.0.0.1:8000`, or one of them".into())
+}
+
+fn poll_interval(s: &str) -> Result<Duration, String> {
+    match s.parse::<f64>() {
+        // A tenth of a second is as fast as anyone saves; a day is a typing mistake.
+        Ok(x) if (0.1..=86_400.0).contains(&x) => Ok(Duration::from_secs_f64(x)),
+        _ => Err("write seconds from 0.1 up, as in `2`".into()),
+    }
+}
+
+fn glob_pattern(s: &str) -> Result<glob::Pattern, String> {
+    glob::Pattern::new(s).map_err(|e| e.msg.to_string())
+}
+
 fn bits(s: &str) -> Result<Depth, String> {
     match s {
         "8" => Ok(Depth::Eight),
@@ -254,15 +358,17 @@ mod tests {
     }
 
     #[test]
-    fn stats_never_swallow_the_file() {
+    fn optional_values_never_swallow_the_file() {
         let mended = |s: &str| {
-            let v = with_stats_value(s.split(' ').map(OsString::from));
+            let v = with_optional_values(s.split(' ').map(OsString::from));
             v.into_iter().map(|a| a.into_string().unwrap()).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(mended("render --stats a.scene"), "render --stats=text a.scene");
         assert_eq!(mended("render a --stats json"), "render a --stats json");
         assert_eq!(mended("render a --stats"), "render a --stats=text");
         assert_eq!(mended("render -- --stats"), "render -- --stats");
+        assert_eq!(mended("watch --serve a.scene"), "watch --serve=127.0.0.1:0 a.scene");
+        assert_eq!(mended("watch --serve 8000 a.scene"), "watch --serve 8000 a.scene");
     }
 
     #[test]
@@ -279,6 +385,12 @@ mod tests {
         assert!(crop("1,2,0,4").is_err() && crop("1,2,3").is_err() && crop("-1,2,3,4").is_err());
         assert_eq!(pixel("640,360"), Ok((640, 360)));
         assert_eq!(assignment("a = b=c"), Ok(("a".into(), "b=c".into())));
+        let at = |s| address(s).map(|a| a.to_string()).ok();
+        assert_eq!(at("8000").as_deref(), Some("127.0.0.1:8000"));
+        assert_eq!(at("localhost:80").as_deref(), Some("127.0.0.1:80"));
+        assert_eq!(at("::1").as_deref(), Some("[::1]:0"));
+        assert_eq!((at("a.scene"), at("70000"), at("")), (None, None, None));
+        assert!(poll_interval("0").is_err() && poll_interval("NaN").is_err() && poll_interval("0.5").is_ok());
         assert!(assignment("=1").is_err() && assignment("a").is_err());
     }
 }

@@ -5,14 +5,18 @@ pub mod args;
 pub mod check;
 pub mod completions;
 pub mod explain;
+pub mod gallery;
 pub mod help;
 pub mod load;
 pub mod params;
+pub mod picture;
+pub mod preview;
 pub mod progress;
 pub mod render;
 pub mod stats;
 pub mod stop;
 pub mod view;
+pub mod watch;
 
 pub use stop::{Exit, Stop};
 
@@ -24,7 +28,7 @@ use std::process::ExitCode;
 /// Does what the arguments ask for, the program's name first among them; prints results to standard output, messages to
 /// standard error.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(args::with_stats_value(arguments)) {
+    let cli = match Cli::try_parse_from(args::with_optional_values(arguments)) {
         Ok(cli) => cli,
         Err(e) => {
             // Also how `--help` and `--version` arrive. If even the message can't be printed, the code is all there is.
@@ -34,6 +38,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let result = match &cli.command {
         Command::Render(a) => render::run(a),
+        Command::Watch(a) => watch::run(a),
+        Command::Gallery(a) => gallery::run(a),
         Command::Check(a) => check::run(a),
         Command::Explain(a) => explain::run(a),
         Command::Params(a) => params::run(a),

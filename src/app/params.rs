@@ -132,6 +132,8 @@ mod tests {
             kind,
             default: "1".into(),
             value: value.into(),
+            number: None,
+            color: None,
             span: Span::new(FileId(0), 0..1),
         }
     }

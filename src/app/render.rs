@@ -2,15 +2,15 @@
 
 use super::args::RenderArgs;
 use super::load::{load, request, shown_name};
+use super::picture::{fits, look, recipe_of};
 use super::progress::Bar;
 use super::stats::{self, Seconds, Stats};
-use super::view::{checked_crop, precision_word, settings_line};
+use super::view::{checked_crop, precision_word};
 use super::{Exit, Stop};
 use crate::diag::Diagnostic;
-use crate::film::{self, Depth, Film, Format, OutputFile, Recipe, recipe};
+use crate::film::{self, Depth, Film, Format, OutputFile, Recipe};
 use crate::lang::Evaluated;
 use crate::render::{self, Rendered, World};
-use crate::scene::Precision;
 use std::io::{self, Cursor, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -30,8 +30,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let start = Instant::now();
     let (output, format) = output(args)?;
     let evaluated = load(&request(&args.scene.file, &args.scene.set, &args.scene.allow_read)?, args.quiet)?;
-    let camera = args.view.camera(&evaluated.scene)?;
-    let mut options = args.view.options(&evaluated.scene);
+    let (camera, mut options) = look(&evaluated, &args.view)?;
     options.crop = checked_crop(args.crop, &options)?;
     options.threads = args.threads.map(|n| n as usize);
     let target = match &output {
@@ -41,17 +40,8 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
 
     let world_start = Instant::now();
     let world = World::build(&evaluated.scene, camera);
+    fits(&world, &evaluated, &options)?;
     let world_seconds = world_start.elapsed().as_secs_f64();
-    if options.precision == Precision::F32
-        && let Some(node) = world.beyond_f32()
-    {
-        let place = evaluated.scene.node(node).place.clone();
-        let d = Diagnostic::error("this shape is too large, too small or too far away for 32-bit numbers")
-            .at(place.span, "leave out `precision: \"f32\"` or `--precision f32`")
-            .note("with 32 bits, sizes and distances from the camera are 0 or from 1e-18 to 1e18")
-            .from_place(place);
-        return Err(Stop::scene(d, &evaluated.sources));
-    }
 
     let render_start = Instant::now();
     let part = options.crop_or_all();
@@ -64,10 +54,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let render_seconds = render_start.elapsed().as_secs_f64();
 
     let encode_start = Instant::now();
-    let recipe = Recipe::new()
-        .with("rtdsl:scene", recipe::scene_digest(&evaluated.sources))
-        .with("rtdsl:settings", settings_line(&options, camera))
-        .with("rtdsl:parameters", parameters_line(&evaluated));
+    let recipe = recipe_of(&evaluated, &options, camera);
     match (&output, &target) {
         (Output::File(path), Some(target)) => target
             .write(|out| film::encode(&film, format, &recipe, out))
@@ -149,9 +136,9 @@ fn output(args: &RenderArgs) -> Result<(Output, Format), Stop> {
 }
 
 /// The file to write, found to be writable before the work begins, and none of those that the scene reads.
-fn target(path: &Path, evaluated: &Evaluated) -> Result<OutputFile, Stop> {
+pub fn target(path: &Path, evaluated: &Evaluated) -> Result<OutputFile, Stop> {
     if let Ok(same) = path.canonicalize()
-        && evaluated.files.iter().any(|f| f.canonicalize().is_ok_and(|f| f == same))
+        && evaluated.files.iter().any(|f| f.path.canonicalize().is_ok_and(|f| f == same))
     {
         let d = Diagnostic::error(format!("the picture would overwrite `{}`, which the scene reads", path.display()));
         return Err(Stop::usage(d.note("give it another name with `-o`")));
@@ -166,10 +153,4 @@ fn write_stdout(film: &Film, format: Format, recipe: &Recipe) -> Result<(), Stop
     out.write_all(memory.get_ref())?;
     out.flush()?;
     Ok(())
-}
-
-/// Every parameter's value, as `--set` takes it.
-fn parameters_line(evaluated: &Evaluated) -> String {
-    let values: Vec<String> = evaluated.params.iter().map(|p| format!("{}={}", p.name, p.value)).collect();
-    values.join("; ")
 }

@@ -4,7 +4,7 @@ use crate::diag::{self, Diagnostic, Diagnostics, Look, Sources};
 use crate::lang::Failure;
 use std::io::{self, Write};
 
-/// The program's exit code. (4 is kept for a stated target that was not met.)
+/// The program's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// All is done.
@@ -15,6 +15,8 @@ pub enum Exit {
     Usage = 2,
     /// A file or the system failed.
     System = 3,
+    /// What was asked to hold doesn't: pictures differ from those that are committed.
+    Unmet = 4,
 }
 
 /// Why a command stopped.

@@ -85,9 +85,11 @@ fn load_pictures(build: &mut Build, loader: &mut Loader, mut stack: Vec<PatternI
             && tried.insert(*image)
             && let Some(file) = pictures.get(image.0 as usize)
         {
-            let found = loader.find(file.file, &file.path, file.span).and_then(|(path, _)| {
-                picture::open(&path, &limits)
-                    .map_err(|why| Diagnostic::error(format!("can't show `{}`: {why}", file.path)).at(file.span, ""))
+            let found = loader.find(file.file, &file.path, file.span).and_then(|(path, _, dependency)| {
+                let picture = picture::open(&path, &limits)
+                    .map_err(|why| Diagnostic::error(format!("can't show `{}`: {why}", file.path)).at(file.span, ""))?;
+                loader.was_read(dependency, &path, picture.digest);
+                Ok(picture)
             });
             match found {
                 Ok(picture) => {

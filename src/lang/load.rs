@@ -4,7 +4,7 @@
 use super::ast::{Path as WrittenPath, Statement, StatementKind};
 use super::limits::Limits;
 use super::parse::parse;
-use super::request::{Input, Request};
+use super::request::{Dependency, Input, Request};
 use super::suggest::nearest;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use std::collections::HashMap;
@@ -22,8 +22,8 @@ pub struct Module {
 /// Reads files and remembers them.
 pub struct Loader {
     pub sources: Sources,
-    /// Every path that was read or looked for.
-    pub files: Vec<PathBuf>,
+    /// Every file that was read or looked for.
+    pub files: Vec<Dependency>,
     /// Imported ones before those that import them; the main file is the last.
     pub modules: Vec<Module>,
     pub errors: Diagnostics,
@@ -32,6 +32,8 @@ pub struct Loader {
     /// Folders that may be read, links resolved.
     allowed: Vec<PathBuf>,
     by_path: HashMap<PathBuf, Option<usize>>,
+    /// What was read of each file, links followed.
+    digests: HashMap<PathBuf, [u8; 32]>,
     /// Files being imported, outermost first, with the names to show.
     importing: Vec<(PathBuf, String)>,
     limits: Limits,
@@ -48,6 +50,7 @@ impl Loader {
             folder: PathBuf::new(),
             allowed: request.allow_read.iter().filter_map(|p| p.canonicalize().ok()).collect(),
             by_path: HashMap::new(),
+            digests: HashMap::new(),
             importing: Vec::new(),
             limits,
         };
@@ -63,11 +66,12 @@ impl Loader {
                 (name.clone(), None, bytes.clone())
             }
             Input::File(path) => {
-                self.files.push(path.clone());
+                let file = self.depend(path.clone());
                 let name = path.display().to_string();
                 let unreadable = |e: &io::Error| Diagnostic::error(format!("can't read `{name}`: {}", reason(e)));
                 let full = path.canonicalize().map_err(|e| unreadable(&e))?;
                 let bytes = read(&full, self.limits.file_bytes).map_err(|e| unreadable(&e))?;
+                self.was_read(file, &full, *blake3::hash(&bytes).as_bytes());
                 self.folder = full.parent().unwrap_or(Path::new("/")).to_owned();
                 // The project is the current folder where the file is in it, else the file's own.
                 let here = std::env::current_dir().and_then(|d| d.canonicalize()).ok();
@@ -127,7 +131,7 @@ impl Loader {
     }
 
     fn import(&mut self, from: FileId, path: &WrittenPath) -> Option<usize> {
-        let (full, name) = match self.find(from, &path.text, path.span) {
+        let (full, name, dependency) = match self.find(from, &path.text, path.span) {
             Ok(found) => found,
             Err(d) => {
                 self.errors.push(d);
@@ -151,6 +155,7 @@ impl Loader {
         }
         let index = match read(&full, self.limits.file_bytes) {
             Ok(bytes) => {
+                self.was_read(dependency, &full, *blake3::hash(&bytes).as_bytes());
                 self.importing.push((full.clone(), name.clone()));
                 let before = self.errors.len();
                 let file = self.add(name, Some(full.clone()), bytes);
@@ -171,8 +176,23 @@ impl Loader {
         index
     }
 
-    /// The file that a text names by a path relative to its own folder, and how messages show it.
-    pub fn find(&mut self, from: FileId, written: &str, span: Span) -> Result<(PathBuf, String), Diagnostic> {
+    /// Notes a file that is looked for; its number in `files`.
+    fn depend(&mut self, path: PathBuf) -> usize {
+        if let Some(known) = self.files.iter().position(|f| f.path == path) {
+            return known;
+        }
+        self.files.push(Dependency { path, digest: None });
+        self.files.len() - 1
+    }
+
+    /// Notes what was read at `full`, links followed, for file number `file`.
+    pub fn was_read(&mut self, file: usize, full: &Path, digest: [u8; 32]) {
+        self.files[file].digest = Some(digest);
+        self.digests.insert(full.to_owned(), digest);
+    }
+
+    /// The file that a text names by a path relative to its own folder, how messages show it, and its number in `files`.
+    pub fn find(&mut self, from: FileId, written: &str, span: Span) -> Result<(PathBuf, String, usize), Diagnostic> {
         let source = self.sources.get(from);
         let folder = source.path.as_deref().and_then(Path::parent).unwrap_or(&self.folder);
         let path = folder.join(written);
@@ -180,7 +200,7 @@ impl Loader {
         if written.is_empty() {
             return Err(Diagnostic::error("the name of the file is missing").at(span, ""));
         }
-        self.files.push(path.clone());
+        let file = self.depend(path.clone());
         let full = path.canonicalize().map_err(|e| {
             let d = Diagnostic::error(format!("can't read `{written}`: {}", reason(&e)));
             let d = match self.neighbour(&path, written) {
@@ -194,7 +214,10 @@ impl Loader {
                 .at(span, "")
                 .note("a scene may read only files beneath its project's folder; `--allow-read DIR` allows another"));
         }
-        Ok((full, shown))
+        if let Some(digest) = self.digests.get(&full) {
+            self.files[file].digest = Some(*digest); // read before, under this name or another
+        }
+        Ok((full, shown, file))
     }
     /// The path as written with the name of a file of the same folder that is spelt almost alike.
     fn neighbour(&self, path: &Path, written: &str) -> Option<String> {

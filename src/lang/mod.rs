@@ -38,7 +38,7 @@ mod value;
 pub mod word;
 
 pub use reference::{chapter, chapter_topics, chapters, help, topics};
-pub use request::{Evaluated, Failure, Input, Param, ParamKind, Request};
+pub use request::{Dependency, Evaluated, Failure, Input, Param, ParamKind, Request};
 
 use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use ast::StatementKind;

@@ -29,6 +29,14 @@ impl<'p> Machine<'p> {
                 kind,
                 default: default.show(200),
                 value: value.show(200),
+                number: match &value {
+                    Value::Number(x) | Value::Angle(x) => Some(*x),
+                    _ => None,
+                },
+                color: match &value {
+                    Value::Color(c) => Some(*c),
+                    _ => None,
+                },
                 span: p.name_span,
             });
         }

@@ -29,5 +29,5 @@ pub fn open(path: &Path, limits: &Limits) -> Result<Image, String> {
     let decoded = ImageReader::with_format(Cursor::new(&bytes), format).decode().map_err(|_| damaged())?;
     let rgb = decoded.into_rgb8();
     let texels = rgb.pixels().map(|p| p.0).collect();
-    Ok(Image { path: path.to_owned(), width, height, texels })
+    Ok(Image { path: path.to_owned(), digest: *blake3::hash(&bytes).as_bytes(), width, height, texels })
 }

@@ -1,7 +1,7 @@
 //! What is asked of the language, and what it gives back.
 
 use crate::diag::{Diagnostics, Sources, Span};
-use crate::scene::Scene;
+use crate::scene::{Color, Scene};
 use std::path::PathBuf;
 
 /// A scene to evaluate.
@@ -48,7 +48,7 @@ pub struct Evaluated {
     /// to show, matters only where a picture is wanted.
     pub is_library: bool,
     /// Every file that was read or looked for, the main one first: what a picture depends on.
-    pub files: Vec<PathBuf>,
+    pub files: Vec<Dependency>,
     /// Seconds spent parsing.
     pub parse_seconds: f64,
     /// Seconds spent evaluating, images included.
@@ -63,9 +63,18 @@ pub struct Failure {
     /// The texts that they refer to.
     pub sources: Sources,
     /// Every file that was read or looked for.
-    pub files: Vec<PathBuf>,
+    pub files: Vec<Dependency>,
     /// The main file itself couldn't be read: a fault of files, not of the scene.
     pub main_unreadable: bool,
+}
+
+/// A file that was read or looked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dependency {
+    /// Its path as the text named it, in the folder of the file that named it; links not followed.
+    pub path: PathBuf,
+    /// BLAKE3 of the bytes that were read; `None` where there was nothing to read.
+    pub digest: Option<[u8; 32]>,
 }
 
 /// A declared parameter.
@@ -81,6 +90,10 @@ pub struct Param {
     pub default: String,
     /// The value of this run, as text of the language.
     pub value: String,
+    /// The value, if it is a number; of an angle, its degrees.
+    pub number: Option<f64>,
+    /// The value, if it is a colour.
+    pub color: Option<Color>,
     /// The declaration.
     pub span: Span,
 }

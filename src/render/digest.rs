@@ -45,8 +45,9 @@ fn pattern_digest(scene: &Scene, kind: &PatternKind, before: &[u64]) -> u64 {
                 Mapping::Planar { axis } => 3.0 + *axis as f64,
             };
             let filter = (*filter == Filter::Nearest) as u8 as f64;
-            let path = scene.images[image.0 as usize].path.to_string_lossy().into_owned();
-            numbers(9, &[mapping, filter]).with_text(&path)
+            let content = &scene.images[image.0 as usize].digest;
+            let words = content.chunks(8).map(|b| b.iter().fold(0u64, |w, &x| w << 8 | x as u64));
+            words.fold(numbers(9, &[mapping, filter]), KeyedHash::with)
         }
         K::Mix { .. } => numbers(10, &[]),
         K::Blend { stops, .. } => numbers(11, &[stops.len() as f64]),

@@ -2,13 +2,14 @@
 
 use crate::scene::color::decode_srgb;
 use crate::scene::{Filter, Image};
+use std::sync::Arc;
 
 /// A picture, ready to be looked up. Coordinates outside 0..1 are the caller's to bring back or to wrap.
 #[derive(Clone, Debug)]
 pub struct Texture {
     width: usize,
     height: usize,
-    texels: Vec<[u8; 3]>,
+    texels: Arc<[[u8; 3]]>,
     linear: Box<[f64; 256]>,
 }
 
@@ -22,12 +23,12 @@ pub enum Edge {
 }
 
 impl Texture {
-    /// Takes over an image.
+    /// Shares an image's texels.
     pub fn new(image: &Image) -> Texture {
         Texture {
             width: image.width as usize,
             height: image.height as usize,
-            texels: image.texels.clone(),
+            texels: Arc::clone(&image.texels),
             linear: Box::new(std::array::from_fn(|i| decode_srgb(i as f64 / 255.0))),
         }
     }
@@ -75,7 +76,7 @@ mod tests {
 
     fn two_by_two() -> Texture {
         let texels = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
-        Texture::new(&Image { path: "x.png".into(), width: 2, height: 2, texels })
+        Texture::new(&Image { path: "x.png".into(), digest: [0; 32], width: 2, height: 2, texels: texels.into() })
     }
 
     #[test]
