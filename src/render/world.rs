@@ -6,6 +6,7 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
+use super::census::PrimitiveKey;
 use super::digest::{content_key, material_digests};
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
@@ -76,7 +77,7 @@ pub(super) struct PointLight {
 
 /// A primitive with what it is numbered by.
 struct Entry {
-    key: (u64, u64),
+    key: PrimitiveKey,
     placed: Placed,
     instance: Instance,
     made: Made,
@@ -92,6 +93,11 @@ struct Made {
 impl World {
     /// Prepares `scene` as seen by `camera`.
     pub fn build(scene: &Scene, camera: &Camera) -> World {
+        World::build_keyed(scene, camera).0
+    }
+
+    /// Prepares `scene` as seen by `camera`, and says what each primitive is known by.
+    pub(super) fn build_keyed(scene: &Scene, camera: &Camera) -> (World, Vec<PrimitiveKey>) {
         let to_camera = Affine::translation(-camera.from);
         let (mut shapes, mut lights) = (Vec::new(), Vec::new());
         scene.for_each_instance(|i| match &scene.node(i.node).kind {
@@ -130,20 +136,23 @@ impl World {
             let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
             let world_from_object = to_camera.compose(&instance.world_from_object);
             for placed in place(shape, &world_from_object) {
-                let key = placed_key(&placed, digests[instance.material.0 as usize]);
+                let material = digests[instance.material.0 as usize];
+                let geometry = placed_key(&placed);
+                let key = PrimitiveKey { geometry, material: material.all, transmit: material.transmit };
                 let (centre, half_height) = middle(shape);
                 let made = Made { world_from_object, centre, half_height };
                 entries.push(Entry { key, placed, instance: instance.clone(), made });
             }
         }
         entries.sort_by_key(|e| e.key);
+        let keys = entries.iter().map(|e| e.key).collect();
         let mut bounded = Vec::with_capacity(entries.len());
         for entry in entries {
             world.add(entry, &numbers, &mut bounded);
         }
         world.bvh = Bvh::build(bounded);
         world.find_touched_surfaces();
-        world
+        (world, keys)
     }
 
     /// Compiles the materials that shapes wear; gives each scene material its number here.
@@ -304,9 +313,10 @@ fn transposed(map: &Affine) -> [[f64; 3]; 3] {
     std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
 }
 
-/// What a placed shape is numbered by: all of its content.
-fn placed_key(p: &Placed, material: u64) -> (u64, u64) {
-    let mut bits = vec![material];
+/// What a placed shape is numbered by: all of its content but its look, so that painting never brings another of two
+/// coincident surfaces to the front.
+fn placed_key(p: &Placed) -> (u64, u64) {
+    let mut bits = Vec::with_capacity(32);
     let mut add = |v: &[f64]| bits.extend(v.iter().map(|x| x.to_bits()));
     match &p.form {
         Form::Framed(kind) => match kind {
