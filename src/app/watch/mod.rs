@@ -1,5 +1,7 @@
 //! `rtdsl watch`: makes the picture again whenever the text changes.
 
+pub mod follower;
+
 use super::args::WatchArgs;
 use super::{Exit, Stop};
 
