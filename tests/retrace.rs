@@ -3,9 +3,12 @@
 
 use rtdsl::lang::{Input, Request, evaluate};
 use rtdsl::math::hash::KeyedHash;
-use rtdsl::render::{Built, Options, Retracer, Silent, World, render};
+use rtdsl::render::{Built, Crop, Options, Progress, Retracer, Silent, World, render};
 use rtdsl::scene::{AntiAliasing, Precision, Scene};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+
+/// Nothing is cancelled.
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// Random numbers by key.
 struct Chance(KeyedHash, u64);
@@ -122,7 +125,6 @@ impl Draft {
 
 /// Edits scenes and compares; gives back tiles traced and tiles in all.
 fn compare(seeds: std::ops::Range<u64>, edits: usize, options: &Options) -> (usize, usize) {
-    let never = AtomicBool::new(false);
     let (mut traced, mut all) = (0, 0);
     for seed in seeds {
         let mut c = Chance::new(seed);
@@ -130,14 +132,14 @@ fn compare(seeds: std::ops::Range<u64>, edits: usize, options: &Options) -> (usi
         let mut retracer = Retracer::default();
         for step in 0..=edits {
             let scene = draft.scene();
-            let built = Built::new(&scene, &scene.cameras[0]);
+            let built = Built::new(&scene, &scene.cameras[0], &NEVER).expect("not cancelled");
             let plan = retracer.plan(&built, options);
             if step > 0 {
                 (traced, all) = (traced + plan.traced(), all + plan.tiles());
             }
-            let again = retracer.render(built, options, plan, &Silent, &never).expect("not cancelled");
+            let again = retracer.render(built, options, plan, &Silent, &NEVER).expect("not cancelled");
             let world = World::build(&scene, &scene.cameras[0]);
-            let whole = render(&world, options, &Silent, &never).expect("not cancelled");
+            let whole = render(&world, options, &Silent, &NEVER).expect("not cancelled");
             assert!(*again.film == whole.film, "seed {seed}, edit {step}: {}", {
                 let differ = again.film.pixels.iter().zip(&whole.film.pixels).filter(|(a, b)| a != b).count();
                 format!("{differ} pixels differ")
@@ -173,37 +175,56 @@ fn in_32_bits_too() {
 
 #[test]
 fn another_size_is_another_picture() {
-    let never = AtomicBool::new(false);
     let mut c = Chance::new(7);
     let scene = Draft::new(&mut c).scene();
     let mut retracer = Retracer::default();
     for (width, expected) in [(72, 54), (72, 0), (40, 30)] {
         let options = Options { width, ..options() };
-        let built = Built::new(&scene, &scene.cameras[0]);
+        let built = Built::new(&scene, &scene.cameras[0], &NEVER).expect("not cancelled");
         let plan = retracer.plan(&built, &options);
         assert_eq!(plan.traced(), expected);
-        let again = retracer.render(built, &options, plan, &Silent, &never).expect("not cancelled");
-        let whole = render(&World::build(&scene, &scene.cameras[0]), &options, &Silent, &never).expect("not cancelled");
+        let again = retracer.render(built, &options, plan, &Silent, &NEVER).expect("not cancelled");
+        let whole = render(&World::build(&scene, &scene.cameras[0]), &options, &Silent, &NEVER).expect("not cancelled");
         assert!(*again.film == whole.film);
     }
 }
 
-#[test]
-fn a_cancelled_picture_changes_nothing() {
-    let mut c = Chance::new(11);
-    let mut draft = Draft::new(&mut c);
-    let (mut retracer, options) = (Retracer::default(), options());
-    for cancelled in [false, true, true, false] {
-        let scene = draft.scene();
-        let built = Built::new(&scene, &scene.cameras[0]);
-        let plan = retracer.plan(&built, &options);
-        let again = retracer.render(built, &options, plan, &Silent, &AtomicBool::new(cancelled));
-        assert_eq!(again.is_none(), cancelled);
-        if let Some(again) = again {
-            let world = World::build(&scene, &scene.cameras[0]);
-            let whole = render(&world, &options, &Silent, &AtomicBool::new(false)).expect("not cancelled");
-            assert!(*again.film == whole.film);
+/// Cancels when so many tiles are finished.
+struct Stopper<'c>(AtomicU32, &'c AtomicBool);
+
+impl Progress for Stopper<'_> {
+    fn finished(&self, _tile: Crop, _rows: &[&mut [[f32; 3]]]) {
+        if self.0.fetch_sub(1, Relaxed) == 1 {
+            self.1.store(true, Relaxed);
         }
-        draft.edit(&mut c);
     }
+}
+
+#[test]
+fn a_picture_that_was_cancelled_halfway_leaves_no_trace() {
+    let mut cancelled = 0;
+    for seed in 3000..3020 {
+        let mut c = Chance::new(seed);
+        let mut draft = Draft::new(&mut c);
+        let (mut retracer, options) = (Retracer::default(), options());
+        for step in 0..10 {
+            let scene = draft.scene();
+            let built = Built::new(&scene, &scene.cameras[0], &NEVER).expect("not cancelled");
+            let plan = retracer.plan(&built, &options);
+            let cancel = AtomicBool::new(false);
+            // Every third picture is finished.
+            let tiles = if step % 3 == 0 { u32::MAX } else { 1 + c.below(20) as u32 };
+            let stopper = Stopper(AtomicU32::new(tiles), &cancel);
+            match retracer.render(built, &options, plan, &stopper, &cancel) {
+                None => cancelled += 1,
+                Some(again) => {
+                    let world = World::build(&scene, &scene.cameras[0]);
+                    let whole = render(&world, &options, &Silent, &NEVER).expect("not cancelled");
+                    assert!(*again.film == whole.film, "seed {seed}, edit {step}");
+                }
+            }
+            draft.edit(&mut c);
+        }
+    }
+    assert!(cancelled > 40, "{cancelled}");
 }

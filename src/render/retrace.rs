@@ -21,10 +21,10 @@ pub struct Built {
 }
 
 impl Built {
-    /// Prepares `scene` as seen by `camera`.
-    pub fn new(scene: &Scene, camera: &Camera) -> Built {
-        let (world, keys) = World::build_keyed(scene, camera);
-        Built { world: Arc::new(world), keys }
+    /// Prepares `scene` as seen by `camera`; `None` where `cancel` was set meanwhile.
+    pub fn new(scene: &Scene, camera: &Camera, cancel: &AtomicBool) -> Option<Built> {
+        let (world, keys) = World::build_keyed(scene, camera, cancel)?;
+        Some(Built { world: Arc::new(world), keys })
     }
 
     /// The world.
@@ -45,6 +45,8 @@ struct Before {
     film: Arc<Film>,
     /// One a tile.
     footprints: Vec<Footprint>,
+    /// Tiles into which another picture was traced that wasn't finished.
+    spoilt: Vec<bool>,
 }
 
 /// A finished picture, of which some tiles may be those of the picture before.
@@ -60,8 +62,8 @@ pub struct Retraced {
 pub struct Plan {
     /// Whether each tile is traced.
     tiles: Vec<bool>,
-    /// The film to start from: the picture before, where tiles of it stay.
-    film: Film,
+    /// The picture before, where tiles of it stay.
+    film: Option<Arc<Film>>,
     /// What the tiles that stay depend on, in the new world's numbers.
     footprints: Vec<Footprint>,
 }
@@ -75,9 +77,14 @@ impl Plan {
     pub fn tiles(&self) -> usize {
         self.tiles.len()
     }
-    /// The picture to start from; black where no tile of the one before stays.
-    pub fn film(&self) -> &Film {
-        &self.film
+    /// Pixels to trace.
+    pub fn pixels(&self, options: &Options) -> u64 {
+        let pixels = |(t, _): (Crop, &bool)| t.width as u64 * t.height as u64;
+        tiles_of(options).into_iter().zip(&self.tiles).filter(|t| *t.1).map(pixels).sum()
+    }
+    /// The picture before, of which some tiles stay; `None` where there is none of this view.
+    pub fn film(&self) -> Option<&Arc<Film>> {
+        self.film.as_ref()
     }
 }
 
@@ -92,13 +99,14 @@ impl Retracer {
             same_options && old.eye == new.eye && old.camera == new.camera
         });
         let Some(before) = from else {
-            let part = options.crop_or_all();
-            let (film, n) = (Film::new(part.width, part.height), tiles.len());
-            return Plan { tiles: vec![true; n], film, footprints: vec![Footprint::default(); n] };
+            let n = tiles.len();
+            return Plan { tiles: vec![true; n], film: None, footprints: vec![Footprint::default(); n] };
         };
         let change = Change::between(&before.built.keys, &built.keys, &built.world);
         let difference = Difference::new(&before.built.world, built, &change, options);
-        let moved: Vec<bool> = tiles.iter().zip(&before.footprints).map(|(t, f)| difference.moves(*t, f)).collect();
+        let of_before = before.footprints.iter().zip(&before.spoilt);
+        let moves = |(tile, (f, spoilt)): (&Crop, (&Footprint, &bool))| *spoilt || difference.moves(*tile, f);
+        let moved: Vec<bool> = tiles.iter().zip(of_before).map(moves).collect();
         let renumber = |ids: &[u32]| {
             let mut ids: Box<[u32]> = ids.iter().map(|&id| change.renumbered[id as usize]).collect();
             ids.sort_unstable();
@@ -109,11 +117,10 @@ impl Retracer {
             false => Footprint { seen: renumber(&f.seen), shading: renumber(&f.shading), ..f.clone() },
         };
         let footprints = moved.iter().zip(&before.footprints).map(keep).collect();
-        Plan { tiles: moved, film: Film::clone(&before.film), footprints }
+        Plan { tiles: moved, film: Some(Arc::clone(&before.film)), footprints }
     }
 
-    /// Traces what `plan` says, which was made for the same `built` and `options`; `None` where `cancel` was set meanwhile,
-    /// and then the picture before is still that to start from.
+    /// Traces what `plan` says, which was made for the same `built` and `options`; `None` where `cancel` was set meanwhile.
     pub fn render(
         &mut self,
         built: Built,
@@ -123,10 +130,31 @@ impl Retracer {
         cancel: &AtomicBool,
     ) -> Option<Retraced> {
         let Plan { tiles, film, mut footprints } = plan;
-        let rendered = render_tiles(&built.world, options, (progress, cancel), film, &tiles, &mut footprints)?;
-        let film = Arc::new(rendered.film);
-        self.before = Some(Before { built, options: options.clone(), film: Arc::clone(&film), footprints });
-        Some(Retraced { film, rays: rendered.rays })
+        let part = options.crop_or_all();
+        let mut film = match film {
+            Some(film) => {
+                // Ours is the last hold on it, unless it is still looked at: then it is copied.
+                self.before.iter_mut().for_each(|b| b.film = Arc::new(Film::new(0, 0)));
+                Arc::unwrap_or_clone(film)
+            }
+            None => Film::new(part.width, part.height),
+        };
+        let rays = render_tiles(&built.world, options, (progress, cancel), &mut film, &tiles, &mut footprints);
+        let film = Arc::new(film);
+        match (rays, &mut self.before) {
+            (Some(rays), _) => {
+                let spoilt = vec![false; tiles.len()];
+                let options = options.clone();
+                self.before = Some(Before { built, options, film: Arc::clone(&film), footprints, spoilt });
+                Some(Retraced { film, rays })
+            }
+            (None, Some(before)) if before.film.pixels.is_empty() => {
+                before.film = film;
+                before.spoilt.iter_mut().zip(&tiles).for_each(|(spoilt, traced)| *spoilt |= traced);
+                None
+            }
+            (None, _) => None,
+        }
     }
 }
 

@@ -20,6 +20,8 @@ use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
 use glam::DVec3;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The scene as the tracer sees it.
 pub struct World {
@@ -93,24 +95,39 @@ struct Made {
 impl World {
     /// Prepares `scene` as seen by `camera`.
     pub fn build(scene: &Scene, camera: &Camera) -> World {
-        World::build_keyed(scene, camera).0
+        match World::build_keyed(scene, camera, &AtomicBool::new(false)) {
+            Some((world, _)) => world,
+            None => unreachable!("nothing cancels it"),
+        }
     }
 
-    /// Prepares `scene` as seen by `camera`, and says what each primitive is known by.
-    pub(super) fn build_keyed(scene: &Scene, camera: &Camera) -> (World, Vec<PrimitiveKey>) {
+    /// Prepares `scene` as seen by `camera`, and says what each primitive is known by; `None` where `cancel` was set
+    /// meanwhile.
+    pub(super) fn build_keyed(
+        scene: &Scene,
+        camera: &Camera,
+        cancel: &AtomicBool,
+    ) -> Option<(World, Vec<PrimitiveKey>)> {
+        let go_on = || if cancel.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         let to_camera = Affine::translation(-camera.from);
         let (mut shapes, mut lights) = (Vec::new(), Vec::new());
-        scene.for_each_instance(|i| match &scene.node(i.node).kind {
-            NodeKind::Light(light) => {
-                let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
-                let color = (light.color * light.power).0;
-                if color != [0.0; 3] {
-                    lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
+        let visited = scene.try_for_each_instance(|i| {
+            match &scene.node(i.node).kind {
+                NodeKind::Light(light) => {
+                    let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
+                    let color = (light.color * light.power).0;
+                    if color != [0.0; 3] {
+                        lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
+                    }
                 }
+                NodeKind::Shape(_) => shapes.push(i),
+                NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
             }
-            NodeKind::Shape(_) => shapes.push(i),
-            NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
+            go_on()
         });
+        if visited.is_break() {
+            return None;
+        }
         lights.sort_by_key(|l| content_key(l.at.iter().chain(&l.color).map(|x| x.to_bits())));
 
         let mut world = World {
@@ -134,6 +151,9 @@ impl World {
         let mut entries = Vec::with_capacity(shapes.len());
         for instance in shapes {
             let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
+            if go_on().is_break() {
+                return None;
+            }
             let world_from_object = to_camera.compose(&instance.world_from_object);
             for placed in place(shape, &world_from_object) {
                 let material = digests[instance.material.0 as usize];
@@ -149,10 +169,13 @@ impl World {
         let mut bounded = Vec::with_capacity(entries.len());
         for entry in entries {
             world.add(entry, &numbers, &mut bounded);
+            if go_on().is_break() {
+                return None;
+            }
         }
         world.bvh = Bvh::build(bounded);
         world.find_touched_surfaces();
-        (world, keys)
+        Some((world, keys))
     }
 
     /// Compiles the materials that shapes wear; gives each scene material its number here.
