@@ -15,9 +15,10 @@ pub struct Mark {
     /// Bytes.
     pub size: u64,
     modified: Option<SystemTime>,
-    /// Device, file number, and the time of the last change of anything (seconds, nanoseconds), which no program can set.
-    #[cfg(unix)]
-    inode: (u64, u64, i64, i64),
+    /// When anything of it last changed; where the system keeps that, no program can set it.
+    changed: Option<SystemTime>,
+    /// Device and number of the file, where the system has them.
+    file: (u64, u64),
 }
 
 impl Mark {
@@ -30,35 +31,30 @@ impl Mark {
         Some(Mark::from(newest.as_ref().unwrap_or(&known)))
     }
 
+    #[cfg(unix)]
     fn from(meta: &Metadata) -> Mark {
-        Mark {
-            size: meta.len(),
-            modified: meta.modified().ok(),
-            #[cfg(unix)]
-            inode: {
-                use std::os::unix::fs::MetadataExt;
-                (meta.dev(), meta.ino(), meta.ctime(), meta.ctime_nsec())
-            },
-        }
+        use std::os::unix::fs::MetadataExt;
+        let seconds = u64::try_from(meta.ctime()).ok();
+        let since = seconds.zip(u32::try_from(meta.ctime_nsec()).ok()).map(|(s, ns)| Duration::new(s, ns));
+        let changed = since.and_then(|d| SystemTime::UNIX_EPOCH.checked_add(d));
+        Mark { size: meta.len(), modified: meta.modified().ok(), changed, file: (meta.dev(), meta.ino()) }
+    }
+
+    #[cfg(not(unix))]
+    fn from(meta: &Metadata) -> Mark {
+        let modified = meta.modified().ok();
+        Mark { size: meta.len(), modified, changed: modified, file: (0, 0) }
     }
 
     /// Whether anything written after `time` is sure to give another mark: clocks of file systems go in steps.
-    #[cfg(unix)]
     fn outdated_by_changes_after(&self, time: SystemTime) -> bool {
-        let (_, _, seconds, nanoseconds) = self.inode;
-        let (Ok(seconds), Ok(nanoseconds)) = (u64::try_from(seconds), u32::try_from(nanoseconds)) else {
-            return false;
-        };
-        // Where nanoseconds are kept, time goes in the kernel's ticks, at most 10 ms; else in seconds, on FAT in two.
-        let step = if nanoseconds == 0 { Duration::from_secs(2) } else { Duration::from_millis(20) };
-        let changed = SystemTime::UNIX_EPOCH.checked_add(Duration::new(seconds, nanoseconds));
-        changed.is_some_and(|c| time.duration_since(c).is_ok_and(|age| age > step))
-    }
-
-    /// Elsewhere a file may be replaced by another with the same times: only the bytes tell.
-    #[cfg(not(unix))]
-    fn outdated_by_changes_after(&self, _time: SystemTime) -> bool {
-        false
+        self.changed.is_some_and(|changed| {
+            let part = changed.duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.subsec_nanos());
+            // Where parts of a second are kept, time goes in the kernel's ticks, at most 10 ms; else in seconds, on FAT in
+            // two.
+            let step = if part == 0 { Duration::from_secs(2) } else { Duration::from_millis(20) };
+            time.duration_since(changed).is_ok_and(|age| age > step)
+        })
     }
 }
 
@@ -120,19 +116,18 @@ mod tests {
         assert_eq!(Fingerprint::read(folder.path(), false).content, None, "a folder has no content");
     }
 
-    #[cfg(unix)]
     #[test]
     fn a_mark_is_believed_once_the_clock_has_gone_on() {
-        let mark = |seconds, nanoseconds| Mark { size: 1, modified: None, inode: (0, 0, seconds, nanoseconds) };
         let at = |ms| SystemTime::UNIX_EPOCH + Duration::from_millis(ms);
-        let fine = mark(100, 5_000_000); // 100.005 s
+        let mark = |ms| Mark { size: 1, modified: None, changed: Some(at(ms)), file: (0, 0) };
+        let fine = mark(100_005);
         assert!(!fine.outdated_by_changes_after(at(100_010)));
         assert!(fine.outdated_by_changes_after(at(100_040)));
-        let coarse = mark(100, 0);
+        let coarse = mark(100_000);
         assert!(!coarse.outdated_by_changes_after(at(101_500)));
         assert!(coarse.outdated_by_changes_after(at(102_500)));
-        assert!(!mark(200, 0).outdated_by_changes_after(at(100_000)), "the file's clock is ahead");
-        assert!(!mark(-1, 0).outdated_by_changes_after(at(100_000)));
+        assert!(!mark(200_005).outdated_by_changes_after(at(100_000)), "the file's clock is ahead");
+        assert!(!Mark { changed: None, ..fine }.outdated_by_changes_after(at(200_000)));
     }
 
     #[cfg(unix)]

@@ -44,7 +44,7 @@ fn a_folder_removed_and_made_again_is_followed() {
     fs::create_dir_all(desk.path("x/y")).unwrap();
     desk.write("x/y/a", "master");
     desk.follow(&["x/y/a"]);
-    for round in 0..3 {
+    for round in 0..2 {
         fs::remove_dir_all(desk.path("x")).unwrap();
         desk.changed("x/y/a");
         fs::create_dir_all(desk.path("x/y")).unwrap();
@@ -61,7 +61,7 @@ fn a_folder_made_again_at_once_is_followed() {
     fs::create_dir(desk.path("x")).unwrap();
     desk.write("x/a", "0");
     desk.follow(&["x/a"]);
-    for round in 1..5 {
+    for round in 1..4 {
         fs::remove_dir_all(desk.path("x")).unwrap();
         fs::create_dir(desk.path("x")).unwrap();
         desk.write("x/a", &round.to_string());
@@ -80,7 +80,6 @@ fn a_folder_renamed_away_and_back_is_followed() {
     for folder in ["x", "x/y", "x/y/z"] {
         desk.rename(folder, "away");
         desk.changed("x/y/z/a");
-        desk.write("sentinel2", "");
         desk.rename("away", folder);
         desk.changed("x/y/z/a");
         desk.write("x/y/z/a", folder);

@@ -88,6 +88,15 @@ impl Desk {
         self.write("sentinel", &format!("{text}+"));
         self.changed("sentinel");
     }
+
+    /// The same after what can't be done in one step: on a machine that stopped between the steps, what was in the middle
+    /// is rightly told.
+    #[track_caller]
+    fn only_sentinel_after_a_blink(&self) {
+        self.write("sentinel", "blink");
+        while !self.told.recv_timeout(PATIENCE).expect("a report").contains(&self.path("sentinel")) {}
+        self.read();
+    }
 }
 
 /// What the language says of a file that it reads now.
