@@ -13,6 +13,7 @@ pub mod picture;
 pub mod preview;
 pub mod progress;
 pub mod render;
+pub mod sight;
 pub mod stats;
 pub mod stop;
 pub mod view;

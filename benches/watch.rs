@@ -1,0 +1,131 @@
+//! How soon a saved change is seen: `cargo bench --bench watch` saves a scene again and again while `rtdsl watch` runs, in turn
+//! with bare `rtdsl render`s, and prints medians and their ratios. No thresholds; figures of one run compare only with each
+//! other, for machines drift.
+
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// Saves of each kind.
+const ROUNDS: usize = 21;
+
+/// What is changed, and how: every second save takes it back.
+const CHANGES: [(&str, &str, &str); 5] = [
+    ("camera", "from: [0, 0, 0], at: [0, 0, -1]", "from: [0.1, 0, 0], at: [0.1, 0, -1]"),
+    ("light", "light(at: [30, 45, 20])", "light(at: [31, 45, 20])"),
+    ("one color", "linear(0.8, 0.2, 0.2)", "linear(0.2, 0.8, 0.2)"),
+    ("one place", "from: [-12, -15, -78]", "from: [-12.1, -15, -78]"),
+    ("a comment", "// A mirror ball", "// A mirror  ball"),
+];
+
+struct Watch {
+    child: Child,
+    said: Receiver<Value>,
+}
+
+impl Watch {
+    fn start(folder: &Path) -> Watch {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_rtdsl"))
+            .args(["watch", "--json", "--serve", "-o", "watched.png", "cosc363.scene"])
+            .current_dir(folder)
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("rtdsl starts");
+        let out = BufReader::new(child.stdout.take().expect("its output"));
+        let (tell, said) = channel();
+        std::thread::spawn(move || {
+            for line in out.lines().map_while(Result::ok) {
+                let told = serde_json::from_str(&line).is_ok_and(|v| tell.send(v).is_ok());
+                if !told {
+                    break;
+                }
+            }
+        });
+        Watch { child, said }
+    }
+
+    /// Everything said until the next finished picture.
+    fn until_picture(&self) -> Vec<Value> {
+        let mut all = Vec::new();
+        while all.last().is_none_or(|v: &Value| v["event"] != "picture") {
+            all.push(self.said.recv_timeout(Duration::from_secs(60)).expect("a picture comes"));
+        }
+        all
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn main() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    std::fs::create_dir(folder.join("assets")).expect("made");
+    std::fs::copy(examples.join("assets/earth.png"), folder.join("assets/earth.png")).expect("copied");
+    let text = std::fs::read_to_string(examples.join("cosc363.scene")).expect("read");
+    let scene = folder.join("cosc363.scene");
+    std::fs::write(&scene, &text).expect("written");
+    let watch = Watch::start(folder);
+    watch.until_picture();
+
+    println!(
+        "cosc363.scene, 1280x720; medians of {ROUNDS} saves in ms, from before the save; in turn with bare renders"
+    );
+    println!(
+        "{:<10} {:>7} {:>7} {:>7} {:>12} {:>9} {:>11}",
+        "change", "tiles", "coarse", "final", "bare render", "inner", "inner/bare"
+    );
+    for (name, from, to) in CHANGES {
+        let (mut coarse, mut last, mut bare, mut inner, mut tiles) = (vec![], vec![], vec![], vec![], 0);
+        for round in 0..ROUNDS {
+            let changed = if round % 2 == 0 { text.replace(from, to) } else { text.clone() };
+            assert!(round % 2 == 1 || changed != text, "{name} changes nothing");
+            std::thread::sleep(Duration::from_millis(50));
+            let start = SystemTime::now().duration_since(UNIX_EPOCH).expect("after 1970").as_secs_f64();
+            std::fs::write(&scene, changed).expect("written");
+            for event in watch.until_picture() {
+                let after = (event["time"].as_f64().expect("a time") - start) * 1e3;
+                match event["event"].as_str() {
+                    Some("coarse") => coarse.push(after),
+                    Some("picture") => {
+                        last.push(after);
+                        inner.push(event["total"].as_f64().expect("seconds") * 1e3);
+                        tiles = event["tiles"][0].as_u64().expect("tiles");
+                    }
+                    _ => {}
+                }
+            }
+            let start = Instant::now();
+            let done = Command::new(env!("CARGO_BIN_EXE_rtdsl"))
+                .args(["render", "cosc363.scene", "-o", "bare.png"])
+                .current_dir(folder)
+                .status();
+            assert!(done.is_ok_and(|s| s.success()));
+            bare.push(start.elapsed().as_secs_f64() * 1e3);
+            let same = std::fs::read(folder.join("bare.png")).ok() == std::fs::read(folder.join("watched.png")).ok();
+            assert!(same, "{name}: other bytes than `rtdsl render`'s");
+        }
+        let shown = |v: &mut Vec<f64>| if v.is_empty() { "-".into() } else { format!("{:.1}", median(v)) };
+        println!(
+            "{name:<10} {tiles:>7} {:>7} {:>7} {:>12} {:>9} {:>11.2}",
+            shown(&mut coarse),
+            shown(&mut last),
+            shown(&mut bare),
+            shown(&mut inner),
+            median(&mut inner) / median(&mut bare)
+        );
+    }
+}
+
+fn median(v: &mut [f64]) -> f64 {
+    v.sort_by(f64::total_cmp);
+    v[v.len() / 2]
+}

@@ -1,0 +1,108 @@
+// The pictures: fetched and decoded before they are shown, so that nothing flickers and nothing is ever blank.
+
+/**
+ * Holds the picture on show and, when it is wanted, the one before it. One is fetched at a time, and always the newest.
+ * An entry is `{ key, info, bitmap, blob }`, where `info` is the picture as it was posted.
+ */
+export class Pictures {
+  /** The entry on show, or null. */
+  now = null;
+  /** The entry to compare with, or null. */
+  before = null;
+
+  #posted = null;
+  #wantBefore = false;
+  #busy = false;
+  #onChange;
+
+  /** `onChange` is called when either entry has changed. */
+  constructor(onChange) {
+    this.#onChange = onChange;
+  }
+
+  /** Shows what `posted` names. */
+  show(posted) {
+    this.#posted = posted;
+    this.#catchUp();
+  }
+
+  /** Whether the picture before is needed. */
+  set wantBefore(want) {
+    this.#wantBefore = want;
+    this.#catchUp();
+  }
+
+  async #catchUp() {
+    if (this.#busy) return;
+    this.#busy = true;
+    for (let task = this.#next(); task; task = this.#next()) {
+      if (!(await task())) break;
+    }
+    this.#busy = false;
+  }
+
+  /** What is to be done next: a function that tells whether it could be done. */
+  #next() {
+    const { run, picture, previous } = this.#posted ?? {};
+    if (picture && this.now?.key !== key(run, picture)) {
+      return () => this.#load(run, picture, (entry) => {
+        const old = [this.now, this.before];
+        this.now = entry;
+        // What was on show may be the very picture to compare with.
+        this.before = old.find((o) => o?.key === this.#previousKey()) ?? this.before;
+        old.forEach((o) => this.#drop(o));
+      });
+    }
+    if (this.before && this.before.key !== this.#previousKey()) {
+      return async () => {
+        const old = this.before;
+        this.before = null;
+        this.#drop(old);
+        return true;
+      };
+    }
+    if (this.#wantBefore && previous && !this.before) {
+      return () => this.#load(run, previous, (entry) => (this.before = entry));
+    }
+    return null;
+  }
+
+  #previousKey() {
+    const { run, previous } = this.#posted;
+    return previous ? key(run, previous) : null;
+  }
+
+  /** Frees what is shown nowhere. */
+  #drop(entry) {
+    if (entry && entry !== this.now && entry !== this.before) {
+      this.#onChange();
+      entry.bitmap.close();
+    }
+  }
+
+  async #load(run, info, put) {
+    try {
+      const response = await fetch(`/picture/${info.id}.png?run=${encodeURIComponent(run)}`);
+      if (!response.ok) return this.#isPast(run, info);
+      const blob = await response.blob();
+      const bitmap = await createImageBitmap(blob);
+      put({ key: key(run, info), info, bitmap, blob });
+      this.#onChange();
+      return true;
+    } catch {
+      // The server is gone, and what it posts when it is back comes anew.
+      return this.#isPast(run, info);
+    }
+  }
+
+  /** Whether something newer than `info` has been posted meanwhile: then that is worth a try. */
+  #isPast(run, info) {
+    const { run: runNow, picture, previous } = this.#posted;
+    return ![picture, previous].some((p) => p && key(runNow, p) === key(run, info));
+  }
+}
+
+/** Numbers of pictures begin anew with each run of the program. */
+function key(run, info) {
+  return `${run}/${info.id}`;
+}
