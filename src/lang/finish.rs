@@ -126,6 +126,9 @@ fn open(file: &PictureFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
 
 /// Why a shape can't be traced where it stands.
 fn misplaced(shape: &Shape, world_from_object: &crate::math::Affine) -> Option<String> {
+    if surely_placed(shape, world_from_object) {
+        return None;
+    }
     let m = world_from_object.linear_f64();
     let column = |c: usize| DVec3::new(m[0][c], m[1][c], m[2][c]).abs().max_element();
     let (a, b, c) = (column(0), column(1), column(2));
@@ -145,27 +148,51 @@ fn misplaced(shape: &Shape, world_from_object: &crate::math::Affine) -> Option<S
     None
 }
 
+/// Whether a shape stands so far within all limits that `f64` can tell: nearly every one does.
+fn surely_placed(shape: &Shape, world_from_object: &crate::math::Affine) -> bool {
+    /// Room to the limits: far more than the rounding of a few sums and products.
+    const ROOM: f64 = 1e6;
+    let m = world_from_object.linear_f64();
+    // A sum lets nothing that isn't a number through.
+    let size = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
+    let rows = m.map(size);
+    let columns = [0, 1, 2].map(|c| size([m[0][c], m[1][c], m[2][c]]));
+    let normal = |x: &f64| (range::SMALLEST * ROOM..=range::LARGEST / ROOM).contains(x);
+    if !rows.iter().chain(&columns).all(normal) {
+        return false;
+    }
+    // Rows of size 1: the determinant's rounding error is a few 1e-16.
+    let [a, b, c] = [0, 1, 2].map(|r| DVec3::from_array(m[r].map(|x| x / rows[r])));
+    let (points, small, large) = extent(shape);
+    let far = points.iter().map(|p| size(p.to_array())).fold(large, f64::max);
+    let reach = 3.0 * size(rows) * far + size(world_from_object.shift_f64());
+    a.cross(b).dot(c).abs() > 1e-9
+        && small * columns[0].min(columns[1]).min(columns[2]) >= range::SMALLEST * ROOM
+        && reach <= range::LARGEST / ROOM
+}
+
 /// Points of a shape, its smallest and its largest size; 1 where it has none.
-fn extent(shape: &Shape) -> (Vec<DVec3>, f64, f64) {
+fn extent(shape: &Shape) -> ([DVec3; 4], f64, f64) {
     let edges = |p: &[DVec3]| {
         let sizes = p.iter().skip(1).map(|q| (*q - p[0]).abs().max_element());
         sizes.fold((f64::INFINITY, 0f64), |(lo, hi), s| (lo.min(s), hi.max(s)))
     };
     match shape {
-        Shape::Sphere { at, r } => (vec![*at], *r, *r),
-        Shape::Plane { through, .. } => (vec![*through], 1.0, 1.0),
-        Shape::Box { from, to } => (vec![*from, *to], (*to - *from).min_element(), (*to - *from).max_element()),
-        Shape::Disc { at, r, .. } => (vec![*at], *r, *r),
-        Shape::Cylinder { from, to, r, .. } => (vec![*from, *to], *r, *r),
-        Shape::Cone { from, to, r, top, .. } => (vec![*from, *to], r.max(*top), r.max(*top)),
-        Shape::Torus { at, r, tube, .. } => (vec![*at], *tube, r + tube),
+        Shape::Sphere { at, r } => ([*at; 4], *r, *r),
+        Shape::Plane { through, .. } => ([*through; 4], 1.0, 1.0),
+        Shape::Box { from, to } => ([*from, *to, *to, *to], (*to - *from).min_element(), (*to - *from).max_element()),
+        Shape::Disc { at, r, .. } => ([*at; 4], *r, *r),
+        Shape::Cylinder { from, to, r, .. } => ([*from, *to, *to, *to], *r, *r),
+        Shape::Cone { from, to, r, top, .. } => ([*from, *to, *to, *to], r.max(*top), r.max(*top)),
+        Shape::Torus { at, r, tube, .. } => ([*at; 4], *tube, r + tube),
         Shape::Triangle { points, .. } => {
             let (lo, hi) = edges(points);
-            (points.to_vec(), lo, hi)
+            let [a, b, c] = *points;
+            ([a, b, c, c], lo, hi)
         }
         Shape::Tetrahedron { points } => {
             let (lo, hi) = edges(points);
-            (points.to_vec(), lo, hi)
+            (*points, lo, hi)
         }
     }
 }

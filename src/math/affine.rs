@@ -90,26 +90,32 @@ impl Affine {
         let mut m = self.linear;
         let mut powers = [Dd::new(1.0); 3];
         for (row, power) in m.iter_mut().zip(&mut powers) {
+            // A product of a 0 and what isn't finite is 0 here, and would hide it.
+            if row.iter().any(|x| !x.hi.is_finite()) {
+                return None;
+            }
             let largest = row.iter().fold(0.0, |a: f64, x| if x.hi.abs() > a { x.hi.abs() } else { a });
-            if !(largest >= f64::MIN_POSITIVE && largest.is_finite()) {
+            if largest < f64::MIN_POSITIVE {
                 return None;
             }
             *power = Dd::new(reciprocal_power(largest));
             *row = row.map(|x| x * *power);
         }
         // Cofactors, each with its indices in cyclic order so that no sign is needed.
-        let cof = |r: usize, c: usize| {
-            let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
-            m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
-        };
-        let det = m[0][0] * cof(0, 0) + m[0][1] * cof(0, 1) + m[0][2] * cof(0, 2);
+        let cof: [[Dd; 3]; 3] = std::array::from_fn(|r| {
+            std::array::from_fn(|c| {
+                let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+                m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+            })
+        });
+        let det = m[0][0] * cof[0][0] + m[0][1] * cof[0][1] + m[0][2] * cof[0][2];
         if det.hi == 0.0 || !det.hi.is_finite() {
             return None;
         }
         let mut out = Affine::IDENTITY;
         for (r, row) in out.linear.iter_mut().enumerate() {
             for (c, entry) in row.iter_mut().enumerate() {
-                *entry = cof(c, r) / det * powers[c];
+                *entry = cof[c][r] / det * powers[c];
             }
         }
         let back = Affine { shift: [Dd::default(); 3], ..out }.apply_dd(self.shift);

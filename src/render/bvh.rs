@@ -38,7 +38,7 @@ impl Bvh {
     pub fn build(mut leaves: Vec<(u32, Bounds)>) -> Bvh {
         let mut nodes = Vec::with_capacity(leaves.len());
         if !leaves.is_empty() {
-            subdivide(&mut nodes, &mut leaves, 0, 0);
+            subdivide(&mut nodes, &mut leaves, 0, 0, &mut Vec::new());
         }
         Bvh { nodes, leaves }
     }
@@ -157,24 +157,36 @@ fn widest_gap(a: &Bounds, b: &Bounds) -> usize {
     (1..3).fold(0, |best, i| if gap(i) > gap(best) { i } else { best })
 }
 
-fn subdivide(nodes: &mut Vec<BvhNode>, leaves: &mut [(u32, Bounds)], first: u32, depth: u32) {
+/// `spare` is room that all steps share.
+fn subdivide(
+    nodes: &mut Vec<BvhNode>,
+    leaves: &mut [(u32, Bounds)],
+    first: u32,
+    depth: u32,
+    spare: &mut Vec<(u32, Bounds)>,
+) {
     let bounds = leaves.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1));
     let at = nodes.len();
     nodes.push(BvhNode { bounds, first, count: leaves.len() as u32 });
-    let split = match best_split(leaves, &bounds, depth) {
+    let split = match best_split(leaves, &bounds, depth, spare) {
         Some(split) => split,
         None if leaves.len() > LEAF => halve(leaves),
         None => return,
     };
     let (left, right) = leaves.split_at_mut(split);
-    subdivide(nodes, left, first, depth + 1);
+    subdivide(nodes, left, first, depth + 1, spare);
     nodes[at].first = nodes.len() as u32;
     nodes[at].count = 0;
-    subdivide(nodes, right, first + split as u32, depth + 1);
+    subdivide(nodes, right, first + split as u32, depth + 1, spare);
 }
 
 /// Parts the leaves by the cheapest of the binned planes; `None` where a leaf is cheaper or no plane parts them.
-fn best_split(leaves: &mut [(u32, Bounds)], bounds: &Bounds, depth: u32) -> Option<usize> {
+fn best_split(
+    leaves: &mut [(u32, Bounds)],
+    bounds: &Bounds,
+    depth: u32,
+    spare: &mut Vec<(u32, Bounds)>,
+) -> Option<usize> {
     if leaves.len() < 2 || depth >= FREE_DEPTH {
         return None;
     }
@@ -193,15 +205,20 @@ fn best_split(leaves: &mut [(u32, Bounds)], bounds: &Bounds, depth: u32) -> Opti
         let mut right_cost = [0.0; BINS];
         let (mut box_, mut n) = (Bounds::EMPTY, 0);
         for k in (1..BINS).rev() {
+            if bins[k].1 == 0 && k < BINS - 1 {
+                right_cost[k] = right_cost[k + 1];
+                continue;
+            }
             (box_, n) = (box_.union(bins[k].0), n + bins[k].1);
             right_cost[k] = if n == 0 { f64::INFINITY } else { box_.half_area() * n as f64 };
         }
         let (mut box_, mut n) = (Bounds::EMPTY, 0);
         for k in 1..BINS {
-            (box_, n) = (box_.union(bins[k - 1].0), n + bins[k - 1].1);
-            if n == 0 {
+            // Behind an empty bin a plane parts as the one before it does.
+            if bins[k - 1].1 == 0 {
                 continue;
             }
+            (box_, n) = (box_.union(bins[k - 1].0), n + bins[k - 1].1);
             let cost = box_.half_area() * n as f64 + right_cost[k];
             if best.is_none_or(|b| cost < b.0) && cost.is_finite() {
                 best = Some((cost, axis, k));
@@ -215,8 +232,24 @@ fn best_split(leaves: &mut [(u32, Bounds)], bounds: &Bounds, depth: u32) -> Opti
     }
     let (lo, extent) = (centres.lo[axis], centres.hi[axis] - centres.lo[axis]);
     let below = |l: &(u32, Bounds)| bin_of(l.1.centre()[axis], lo, extent) < plane;
-    leaves.sort_by_key(|l| !below(l)); // stable: the same tree every time
-    Some(leaves.iter().filter(|l| below(l)).count())
+    Some(part(leaves, spare, below))
+}
+
+/// Brings what is `below` to the front, both parts in their order: the same tree every time. Gives how many that are.
+fn part(leaves: &mut [(u32, Bounds)], spare: &mut Vec<(u32, Bounds)>, below: impl Fn(&(u32, Bounds)) -> bool) -> usize {
+    spare.clear();
+    let mut front = 0;
+    for i in 0..leaves.len() {
+        let leaf = leaves[i];
+        if below(&leaf) {
+            leaves[front] = leaf;
+            front += 1;
+        } else {
+            spare.push(leaf);
+        }
+    }
+    leaves[front..].copy_from_slice(spare);
+    front
 }
 
 fn bin_of(x: f64, lo: f64, extent: f64) -> usize {

@@ -104,11 +104,11 @@ fn sphere(at: DVec3, r: f64, world_from_object: &Affine) -> Placed {
     // A turned sphere is a sphere: only its patterns turn.
     let shift = world_from_object.compose(&centre).shift;
     let turn = Affine { shift: [Dd::default(); 3], ..*world_from_object };
-    let back = turn.inverse().unwrap_or(Affine::IDENTITY);
+    let back = || turn.inverse().unwrap_or(Affine::IDENTITY);
     Placed {
         form: Form::Framed(Kind::Sphere(r * s)),
         world_from_local: Affine { shift, ..Affine::IDENTITY },
-        made_from_local: if turn.is_translation() { centre } else { centre.compose(&back) },
+        made_from_local: if turn.is_translation() { centre } else { centre.compose(&back()) },
         rescale: None, // the turn's inverse scales back; a curved surface has no faces
         extent: Some([[0.0; 3], [r * s; 3]]),
     }

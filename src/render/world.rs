@@ -164,7 +164,7 @@ impl World {
                 entries.push(Entry { key, placed, instance: instance.clone(), made });
             }
         }
-        entries.sort_by_key(|e| e.key);
+        entries.sort_by_cached_key(|e| e.key); // entries are large: each is moved but once or twice
         let keys = entries.iter().map(|e| e.key).collect();
         let mut bounded = Vec::with_capacity(entries.len());
         for entry in entries {
