@@ -73,7 +73,16 @@ impl Affine {
 
     /// First `inner`, then `self`.
     pub fn compose(&self, inner: &Affine) -> Affine {
-        let mut out = Affine { linear: [[Dd::default(); 3]; 3], shift: self.apply_dd(inner.shift) };
+        let shift = self.apply_dd(inner.shift);
+        // Products with 1 and 0 left out, and with them the sign of a 0.
+        let plain = |m: &Affine| m.linear.map(|row| row.map(|x| if x.hi == 0.0 { Dd::default() } else { x }));
+        if inner.is_translation() {
+            return Affine { linear: plain(self), shift };
+        }
+        if self.is_translation() {
+            return Affine { linear: plain(inner), shift };
+        }
+        let mut out = Affine { linear: [[Dd::default(); 3]; 3], shift };
         for r in 0..3 {
             for c in 0..3 {
                 out.linear[r][c] = (0..3).fold(Dd::default(), |s, k| s + self.linear[r][k] * inner.linear[k][c]);

@@ -198,30 +198,30 @@ fn best_split(
             continue;
         }
         let mut bins = [(Bounds::EMPTY, 0usize); BINS];
+        let mut used = 0u32; // one bit a bin: most nodes are near the leaves and fill but a few
         for (_, b) in leaves.iter() {
-            let bin = &mut bins[bin_of(b.centre()[axis], lo, extent)];
-            *bin = (bin.0.union(*b), bin.1 + 1);
+            let k = bin_of(b.centre()[axis], lo, extent);
+            bins[k] = (bins[k].0.union(*b), bins[k].1 + 1);
+            used |= 1 << k;
         }
+        // What is to the right of each bin that is used but the last.
         let mut right_cost = [0.0; BINS];
-        let (mut box_, mut n) = (Bounds::EMPTY, 0);
-        for k in (1..BINS).rev() {
-            if bins[k].1 == 0 && k < BINS - 1 {
-                right_cost[k] = right_cost[k + 1];
-                continue;
-            }
+        let (mut box_, mut n, mut rest) = (Bounds::EMPTY, 0, used);
+        while rest.count_ones() > 1 {
+            let k = rest.ilog2() as usize;
+            rest ^= 1 << k;
             (box_, n) = (box_.union(bins[k].0), n + bins[k].1);
-            right_cost[k] = if n == 0 { f64::INFINITY } else { box_.half_area() * n as f64 };
+            right_cost[rest.ilog2() as usize] = box_.half_area() * n as f64;
         }
-        let (mut box_, mut n) = (Bounds::EMPTY, 0);
-        for k in 1..BINS {
-            // Behind an empty bin a plane parts as the one before it does.
-            if bins[k - 1].1 == 0 {
-                continue;
-            }
-            (box_, n) = (box_.union(bins[k - 1].0), n + bins[k - 1].1);
+        // A plane after each of them; one within a gap parts as the first one there.
+        let (mut box_, mut n, mut rest) = (Bounds::EMPTY, 0, used);
+        while rest.count_ones() > 1 {
+            let k = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            (box_, n) = (box_.union(bins[k].0), n + bins[k].1);
             let cost = box_.half_area() * n as f64 + right_cost[k];
             if best.is_none_or(|b| cost < b.0) && cost.is_finite() {
-                best = Some((cost, axis, k));
+                best = Some((cost, axis, k + 1));
             }
         }
     }
