@@ -120,7 +120,7 @@ fn open(file: &PictureFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
     let bytes = read(&path, picture::FILE_BYTES).map_err(|e| refuse(reason(&e)))?;
     let digest = loader.was_read(dependency, &path, &bytes);
     let decode = || picture::decode(&path, &bytes, digest, &loader.limits);
-    let picture = loader.memory.pictures.get(digest, decode).map_err(refuse)?;
+    let picture = loader.store.pictures.get(digest, decode).map_err(refuse)?;
     Ok(Image { path, ..picture })
 }
 

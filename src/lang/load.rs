@@ -3,7 +3,7 @@
 
 use super::ast::{Path as WrittenPath, StatementKind};
 use super::limits::Limits;
-use super::memory::Memory;
+use super::memory::Store;
 use super::parse::{Parsed, parse};
 use super::request::{Dependency, Input, Request};
 use super::suggest::nearest;
@@ -40,7 +40,7 @@ pub struct Loader<'m> {
     /// Files being imported, outermost first, with the names to show.
     importing: Vec<(PathBuf, String)>,
     pub limits: Limits,
-    pub memory: &'m mut Memory,
+    pub store: &'m mut Store,
     cancel: &'m AtomicBool,
 }
 
@@ -49,7 +49,7 @@ impl<'m> Loader<'m> {
     pub fn load(
         request: &Request,
         limits: Limits,
-        memory: &'m mut Memory,
+        store: &'m mut Store,
         cancel: &'m AtomicBool,
     ) -> (Loader<'m>, Result<(), Diagnostic>) {
         let mut loader = Loader {
@@ -63,7 +63,7 @@ impl<'m> Loader<'m> {
             digests: HashMap::new(),
             importing: Vec::new(),
             limits,
-            memory,
+            store,
             cancel,
         };
         let read = loader.main(&request.main);
@@ -145,7 +145,7 @@ impl<'m> Loader<'m> {
 
     fn parse(&mut self, file: FileId, digest: [u8; 32]) -> Arc<Parsed> {
         let (text, cancel) = (&self.sources.get(file).text, self.cancel);
-        let parsed = self.memory.parses.get((digest, file), || {
+        let parsed = self.store.parses.get((digest, file), || {
             let parsed = Arc::new(parse(file, text, cancel));
             // What was broken off is no use to the next evaluation.
             if cancel.load(Relaxed) { Err(parsed) } else { Ok(parsed) }

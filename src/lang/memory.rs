@@ -1,6 +1,8 @@
 //! What an evaluation leaves for the next: parsed files and decoded pictures, known by content.
 
 use super::parse::Parsed;
+use super::request::{Evaluated, Failure};
+use super::running::Running;
 use crate::diag::FileId;
 use crate::scene::Image;
 use std::collections::HashMap;
@@ -13,13 +15,24 @@ use std::sync::Arc;
 /// needs again, so it keeps what the last good one used.
 #[derive(Debug, Default)]
 pub struct Memory {
+    pub(super) store: Store,
+    /// A cancelled evaluation that is still ending, and has the store.
+    pub(super) left: Option<Running<Done>>,
+}
+
+/// What a thread that evaluates gives back; the result is worth nothing where it was cancelled.
+pub(super) type Done = (Result<Evaluated, Failure>, Store);
+
+/// What is kept.
+#[derive(Debug, Default)]
+pub(super) struct Store {
     /// By the digest of the file's bytes and by the file's number, which stands in every span.
     pub(super) parses: Shelf<([u8; 32], FileId), Arc<Parsed>>,
     /// By the digest of the file's bytes.
     pub(super) pictures: Shelf<[u8; 32], Image>,
 }
 
-impl Memory {
+impl Store {
     /// Ends an evaluation.
     pub(super) fn end(&mut self, good: bool) {
         self.parses.end(good);

@@ -28,6 +28,7 @@ mod property;
 mod reference;
 pub mod request;
 mod resolve;
+mod running;
 mod scan;
 mod scope;
 mod suggest;
@@ -46,10 +47,12 @@ use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use ast::StatementKind;
 use build::Build;
 use code::Node;
-use limits::{Limits, STACK_BYTES};
+use limits::Limits;
 use load::Loader;
 use machine::{Machine, SetValue};
+use memory::{Done, Store};
 use resolve::Resolver;
+use running::Running;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
@@ -60,50 +63,67 @@ pub fn evaluate(request: &Request) -> Result<Evaluated, Failure> {
     evaluate_within(request, Limits::default())
 }
 
-/// As [`evaluate`], with what earlier evaluations left in `memory`. `None` where `cancel` was set meanwhile, and stays so
-/// until this returns: nobody waits for the result, so it is given up soon.
+/// As [`evaluate`], with what earlier evaluations left in `memory`. `None`, within some milliseconds, where `cancel` is set
+/// meanwhile.
 pub fn evaluate_again(
     request: &Request,
     memory: &mut Memory,
     cancel: &AtomicBool,
 ) -> Option<Result<Evaluated, Failure>> {
-    let result = evaluate_on_thread(request, Limits::default(), memory, cancel);
-    let cancelled = cancel.load(Relaxed);
-    memory.end(result.is_ok() && !cancelled);
-    (!cancelled).then_some(result)
+    // Two at once would need the space of two, and many cancelled one after the other more and more.
+    if let Some(left) = memory.left.take() {
+        match left.wait(cancel) {
+            Ok((_, store)) => memory.store = store,
+            Err(left) => {
+                memory.left = Some(left);
+                return None;
+            }
+        }
+    }
+    let running = match start(request, Limits::default(), std::mem::take(&mut memory.store)) {
+        Ok(running) => running,
+        Err(failure) => return Some(Err(failure)),
+    };
+    match running.wait(cancel) {
+        Ok((result, store)) => {
+            memory.store = store;
+            Some(result)
+        }
+        Err(left) => {
+            memory.left = Some(left);
+            None
+        }
+    }
 }
 
 fn evaluate_within(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
-    evaluate_on_thread(request, limits, &mut Memory::default(), &AtomicBool::new(false))
+    start(request, limits, Store::default())?.join().0
 }
 
-/// Evaluates on a thread of its own, whose stack fits the limits on nesting.
-fn evaluate_on_thread(
-    request: &Request,
-    limits: Limits,
-    memory: &mut Memory,
-    cancel: &AtomicBool,
-) -> Result<Evaluated, Failure> {
-    std::thread::scope(|scope| {
-        let run = || run(request, limits, memory, cancel);
-        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, run);
-        match thread.map(|t| t.join()) {
-            Ok(Ok(result)) => result,
-            Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            Err(e) => Err(Failure {
-                diagnostics: vec![Diagnostic::error(format!("can't start evaluating: {}", load::reason(&e)))],
-                sources: Sources::new(),
-                files: Vec::new(),
-                main_unreadable: true,
-            }),
+/// Evaluates on a thread of its own.
+fn start(request: &Request, limits: Limits, mut store: Store) -> Result<Running<Done>, Failure> {
+    let request = request.clone();
+    let work = move |cancel: &AtomicBool| {
+        let mut result = run(&request, limits, &mut store, cancel);
+        if cancel.load(Relaxed) {
+            result = Err(nothing("cancelled"));
         }
-    })
+        store.end(result.is_ok());
+        (result, store)
+    };
+    Running::start(work).map_err(|e| nothing(&format!("can't start evaluating: {}", load::reason(&e))))
+}
+
+/// A failure before anything was read.
+fn nothing(why: &str) -> Failure {
+    let diagnostics = vec![Diagnostic::error(why)];
+    Failure { diagnostics, sources: Sources::new(), files: Vec::new(), main_unreadable: true }
 }
 
 /// Whatever it gives where `cancel` is set meanwhile, it isn't to be shown.
-fn run(request: &Request, limits: Limits, memory: &mut Memory, cancel: &AtomicBool) -> Result<Evaluated, Failure> {
+fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool) -> Result<Evaluated, Failure> {
     let start = Instant::now();
-    let (mut loader, read) = Loader::load(request, limits, memory, cancel);
+    let (mut loader, read) = Loader::load(request, limits, store, cancel);
     if let Err(d) = read {
         return Err(Failure {
             diagnostics: vec![d],

@@ -91,7 +91,7 @@ fn it_keeps_what_is_used_and_what_a_failure_did_not_reach() {
     let mut texels = |text: &str| {
         fs::write(&main, text).unwrap();
         let result = again(&file(&main), &mut memory);
-        (result.ok().and_then(|e| e.scene.images.first().map(|i| i.texels.clone())), memory.sizes())
+        (result.ok().and_then(|e| e.scene.images.first().map(|i| i.texels.clone())), memory.store.sizes())
     };
     let shows = "import \"lib.scene\" { r }\nsphere(r: r, mat: matte(image(\"p.png\")))";
     let (first, sizes) = texels(shows);
