@@ -4,10 +4,27 @@ use super::Stop;
 use super::args::ViewArgs;
 use super::view::settings_line;
 use crate::diag::Diagnostic;
-use crate::film::{Recipe, recipe};
+use crate::film::{Depth, Format, Recipe, recipe};
 use crate::lang::Evaluated;
 use crate::render::{Options, World};
 use crate::scene::{Camera, Precision};
+use std::path::Path;
+
+/// The form of a picture file, by its name.
+///
+/// # Errors
+/// The name's ending is no picture's, or `depth` isn't for this form.
+pub fn format_of(path: &Path, depth: Depth) -> Result<Format, Stop> {
+    let Some(format) = Format::from_path(path, depth) else {
+        let d = Diagnostic::error(format!("what kind of picture shall `{}` be?", path.display()));
+        return Err(Stop::usage(d.note("its name must end in `.png`, `.exr` or `.hdr`")));
+    };
+    if depth == Depth::Sixteen && format != Format::Png(depth) {
+        let d = Diagnostic::error("`--bits` is for `.png` files");
+        return Err(Stop::usage(d.note("`.exr` and `.hdr` hold linear light in a form of their own")));
+    }
+    Ok(format)
+}
 
 /// Which camera looks at the scene, and how its picture is traced.
 ///

@@ -1,6 +1,6 @@
 //! A progress bar on a terminal, and nothing anywhere else.
 
-use crate::render::Progress;
+use crate::render::{Crop, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// The bar; gone when dropped.
@@ -18,8 +18,8 @@ impl Bar {
 }
 
 impl Progress for Bar {
-    fn advance(&self, pixels: u64) {
-        self.0.inc(pixels);
+    fn finished(&self, tile: Crop, _rows: &[&mut [[f32; 3]]]) {
+        self.0.inc(tile.width as u64 * tile.height as u64);
     }
 }
 

@@ -2,13 +2,13 @@
 
 use super::args::RenderArgs;
 use super::load::{load, request, shown_name};
-use super::picture::{fits, look, recipe_of};
+use super::picture::{fits, format_of, look, recipe_of};
 use super::progress::Bar;
 use super::stats::{self, Seconds, Stats};
 use super::view::{checked_crop, precision_word};
 use super::{Exit, Stop};
 use crate::diag::Diagnostic;
-use crate::film::{self, Depth, Film, Format, OutputFile, Recipe};
+use crate::film::{self, Film, Format, OutputFile, Recipe};
 use crate::lang::Evaluated;
 use crate::render::{self, Rendered, World};
 use std::io::{self, Cursor, IsTerminal, Write};
@@ -105,19 +105,7 @@ fn output(args: &RenderArgs) -> Result<(Output, Format), Stop> {
     let from_stdin = args.scene.file == Path::new("-");
     match &args.out {
         Some(path) if path == Path::new("-") => Ok((Output::Stdout, png)),
-        Some(path) => match Format::from_path(path, args.bits) {
-            Some(format) => {
-                if args.bits == Depth::Sixteen && format != png {
-                    let d = Diagnostic::error("`--bits` is for `.png` files");
-                    return Err(Stop::usage(d.note("`.exr` and `.hdr` hold linear light in a form of their own")));
-                }
-                Ok((Output::File(path.clone()), format))
-            }
-            None => {
-                let d = Diagnostic::error(format!("what kind of picture shall `{}` be?", path.display()));
-                Err(Stop::usage(d.note("its name must end in `.png`, `.exr` or `.hdr`")))
-            }
-        },
+        Some(path) => Ok((Output::File(path.clone()), format_of(path, args.bits)?)),
         None if from_stdin && io::stdout().is_terminal() => {
             let d = Diagnostic::error("a picture of standard input needs a place to go");
             Err(Stop::usage(d.note("write `-o NAME.png`, or send standard output to a file or another program")))

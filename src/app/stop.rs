@@ -48,6 +48,16 @@ impl Stop {
         }
     }
 
+    /// The messages.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// The texts that they refer to.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
     /// Prints the message to standard error.
     pub fn print(&self) {
         print_diagnostics(&self.diagnostics, &self.sources);

@@ -9,9 +9,10 @@ use crate::scene::{
 };
 use ecow::EcoString;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A scene under construction.
-pub struct Build {
+pub struct Build<'c> {
     /// What there is so far.
     pub scene: Scene,
     /// What is known of each pattern, by its id.
@@ -25,6 +26,8 @@ pub struct Build {
     pub has_camera: bool,
     /// Budgets.
     pub limits: Limits,
+    steps: u64,
+    cancel: &'c AtomicBool,
 }
 
 #[derive(Clone, Copy)]
@@ -48,9 +51,9 @@ pub struct PictureFile {
     pub span: Span,
 }
 
-impl Build {
-    /// An empty scene.
-    pub fn new(limits: Limits) -> Build {
+impl<'c> Build<'c> {
+    /// An empty scene, given up when `cancel` is set.
+    pub fn new(limits: Limits, cancel: &'c AtomicBool) -> Build<'c> {
         let scene = Scene::empty();
         let default = scene.materials[0].clone();
         let traits = (0..scene.patterns.len() as u32)
@@ -64,7 +67,31 @@ impl Build {
             settings: Vec::new(),
             has_camera: false,
             limits,
+            steps: 0,
+            cancel,
         }
+    }
+
+    /// Uses up `n` of the budget of steps. Whatever can take long does so again and again, with `n` = 0 where it isn't to
+    /// be paid for: here an evaluation is cancelled too.
+    #[inline]
+    pub fn spend(&mut self, n: u64) -> Result<(), Box<Fault>> {
+        self.steps += n;
+        if self.steps > self.limits.steps || self.is_cancelled() { Err(self.out_of_steps()) } else { Ok(()) }
+    }
+
+    #[cold]
+    fn out_of_steps(&self) -> Box<Fault> {
+        Fault::budget(
+            format!("the scene takes more than {} steps to make", self.limits.steps),
+            "a step is a call or a turn of a loop; usually a loop doesn't end, or runs too often",
+        )
+    }
+
+    /// Whether nobody waits for the scene any more: whatever comes of it is thrown away.
+    #[inline]
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Relaxed)
     }
 
     /// Stores a node.

@@ -56,7 +56,7 @@ impl<'p> Machine<'p> {
                 Ok(())
             }
             Value::List(items) if items.iter().all(|v| matches!(v, Value::Node(_) | Value::List(_))) => {
-                self.steps += items.len() as u64;
+                self.build.spend(items.len() as u64).map_err(|f| self.fail(f, span))?;
                 items.iter().try_for_each(|v| self.emit(v, span))
             }
             other => {

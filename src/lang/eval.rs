@@ -151,7 +151,6 @@ impl<'p> Machine<'p> {
                 return Ok(Value::Number(fast));
             }
         }
-        self.spend_on(a, b);
         ops::binary(op, a, b, &mut self.build, span).map_err(|f| {
             let span = if f.argument == Some(1) { ab.1.span } else { span };
             self.fail(f, span)
@@ -164,6 +163,9 @@ impl<'p> Machine<'p> {
         let mut value = Value::None;
         let mut failed = false;
         for n in nodes {
+            if self.build.is_cancelled() {
+                return Err(Stop::Cancelled);
+            }
             if let Code::Emit(_) = n.code {
                 failed |= self.attempt(n, frame)?.is_none();
             } else {
@@ -189,15 +191,6 @@ impl<'p> Machine<'p> {
         self.collected.truncate(before.3);
         self.lists.truncate(before.4);
         Ok(None)
-    }
-
-    /// Arithmetic on long lists counts as so many steps.
-    fn spend_on(&mut self, a: &Value, b: &Value) {
-        for v in [a, b] {
-            if let Value::List(l) = v {
-                self.steps += l.len() as u64 / 4;
-            }
-        }
     }
 
     /// Whether a condition holds.
@@ -230,6 +223,9 @@ impl<'p> Machine<'p> {
         }
         let mut out = EcoVec::with_capacity(items.len());
         for n in items {
+            if self.build.is_cancelled() {
+                return Err(Stop::Cancelled);
+            }
             let v = self.eval(n, frame)?;
             self.hold(&v, span)?;
             out.push(v);

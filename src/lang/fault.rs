@@ -83,6 +83,8 @@ pub enum Stop {
     Fatal(Box<Diagnostic>),
     /// It depends on something whose mistake has been reported.
     Reported,
+    /// Nobody waits for it any more.
+    Cancelled,
 }
 
 impl From<Box<Fault>> for Stop {

@@ -1,32 +1,35 @@
 //! The last look at a scene: what can only be seen when it is whole. Shapes must keep a supported size where they stand
 //! in the world, and the pictures that they show are opened.
 
-use super::build::Build;
-use super::load::Loader;
+use super::build::PictureFile;
+use super::load::{Loader, read, reason};
 use super::picture;
 use super::value::number_text;
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::scene::{Color, ImageId, Material, NodeId, NodeKind, PatternId, PatternKind, Scene, Shape, range};
+use crate::scene::{Color, Image, ImageId, Material, NodeId, NodeKind, PatternId, PatternKind, Scene, Shape, range};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
+use std::ops::ControlFlow;
 
 /// Checks the scene and loads its pictures.
-pub fn finish(build: &mut Build, loader: &mut Loader) -> Diagnostics {
+pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) -> Diagnostics {
     let mut errors = Vec::new();
-    let count = build.scene.instance_count();
-    let most = build.limits.instances;
+    let count = scene.instance_count();
+    let most = loader.limits.instances;
     if count > most {
         let mut d = Diagnostic::error(format!("the scene has more than {most} shapes and lights"))
             .note("groups within groups multiply; a shape counts at every place where it stands");
-        if let Some(root) = build.scene.roots.last() {
-            d = d.at(build.scene.node(*root).place.span, "").from_place(build.scene.node(*root).place.clone());
+        if let Some(root) = scene.roots.last() {
+            d = d.at(scene.node(*root).place.span, "").from_place(scene.node(*root).place.clone());
         }
         return vec![d];
     }
     let mut materials = HashSet::new();
     let mut bad: HashSet<NodeId> = HashSet::new();
-    let scene = &build.scene;
-    scene.for_each_instance(|i| {
+    let cancelled = scene.try_for_each_instance(|i| {
+        if loader.is_cancelled() {
+            return ControlFlow::Break(());
+        }
         let node = scene.node(i.node);
         let place = match &node.kind {
             NodeKind::Shape(shape) => {
@@ -51,13 +54,17 @@ pub fn finish(build: &mut Build, loader: &mut Loader) -> Diagnostics {
                     .from_place(node.place.clone()),
             );
         }
+        ControlFlow::Continue(())
     });
+    if cancelled.is_break() {
+        return errors;
+    }
     let mut live: Vec<PatternId> = Vec::new();
     for id in materials {
         let m = scene.material(id);
         live.extend(slots(m));
     }
-    errors.extend(load_pictures(build, loader, live));
+    errors.extend(load_pictures(scene, pictures, loader, live));
     errors
 }
 
@@ -66,32 +73,32 @@ fn slots(m: &Material) -> impl Iterator<Item = PatternId> {
 }
 
 /// Opens the pictures that `live` patterns show. Patterns that nothing shows become black, so that no picture is missing.
-fn load_pictures(build: &mut Build, loader: &mut Loader, mut stack: Vec<PatternId>) -> Diagnostics {
+fn load_pictures(
+    scene: &mut Scene,
+    pictures: &[PictureFile],
+    loader: &mut Loader,
+    mut stack: Vec<PatternId>,
+) -> Diagnostics {
     let mut errors = Vec::new();
     let mut live = HashSet::new();
     while let Some(id) = stack.pop() {
         if live.insert(id) {
-            stack.extend(build.scene.pattern(id).kind.children());
+            stack.extend(scene.pattern(id).kind.children());
         }
     }
     let mut opened: HashMap<ImageId, ImageId> = HashMap::new();
     let mut tried = HashSet::new();
-    let limits = build.limits;
-    let pictures = std::mem::take(&mut build.pictures);
-    let Scene { patterns, images, .. } = &mut build.scene;
+    let Scene { patterns, images, .. } = scene;
     for (i, pattern) in patterns.iter_mut().enumerate() {
         let PatternKind::Image { image, .. } = &mut pattern.kind else { continue };
         if live.contains(&PatternId(i as u32))
             && tried.insert(*image)
             && let Some(file) = pictures.get(image.0 as usize)
         {
-            let found = loader.find(file.file, &file.path, file.span).and_then(|(path, _, dependency)| {
-                let picture = picture::open(&path, &limits)
-                    .map_err(|why| Diagnostic::error(format!("can't show `{}`: {why}", file.path)).at(file.span, ""))?;
-                loader.was_read(dependency, &path, picture.digest);
-                Ok(picture)
-            });
-            match found {
+            if loader.is_cancelled() {
+                return errors;
+            }
+            match open(file, loader) {
                 Ok(picture) => {
                     opened.insert(*image, ImageId(images.len() as u32));
                     images.push(picture);
@@ -105,6 +112,16 @@ fn load_pictures(build: &mut Build, loader: &mut Loader, mut stack: Vec<PatternI
         }
     }
     errors
+}
+
+fn open(file: &PictureFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
+    let (path, _, dependency) = loader.find(file.file, &file.path, file.span)?;
+    let refuse = |why: String| Diagnostic::error(format!("can't show `{}`: {why}", file.path)).at(file.span, "");
+    let bytes = read(&path, picture::FILE_BYTES).map_err(|e| refuse(reason(&e)))?;
+    let digest = loader.was_read(dependency, &path, &bytes);
+    let decode = || picture::decode(&path, &bytes, digest, &loader.limits);
+    let picture = loader.memory.pictures.get(digest, decode).map_err(refuse)?;
+    Ok(Image { path, ..picture })
 }
 
 /// Why a shape can't be traced where it stands.

@@ -1,26 +1,29 @@
 //! Reads scene files and what they import. Only files beneath the project's folder, or beneath a folder that the user
 //! allowed, are read; links and `..` don't lead out of it.
 
-use super::ast::{Path as WrittenPath, Statement, StatementKind};
+use super::ast::{Path as WrittenPath, StatementKind};
 use super::limits::Limits;
-use super::parse::parse;
+use super::memory::Memory;
+use super::parse::{Parsed, parse};
 use super::request::{Dependency, Input, Request};
 use super::suggest::nearest;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A parsed file.
 pub struct Module {
     pub file: FileId,
-    pub statements: Vec<Statement>,
+    pub parsed: Arc<Parsed>,
     /// One an `import` statement: its module, or `None` where it couldn't be read.
     pub imports: Vec<Option<usize>>,
 }
 
 /// Reads files and remembers them.
-pub struct Loader {
+pub struct Loader<'m> {
     pub sources: Sources,
     /// Every file that was read or looked for.
     pub files: Vec<Dependency>,
@@ -36,12 +39,19 @@ pub struct Loader {
     digests: HashMap<PathBuf, [u8; 32]>,
     /// Files being imported, outermost first, with the names to show.
     importing: Vec<(PathBuf, String)>,
-    limits: Limits,
+    pub limits: Limits,
+    pub memory: &'m mut Memory,
+    cancel: &'m AtomicBool,
 }
 
-impl Loader {
+impl<'m> Loader<'m> {
     /// Reads the main file and all that it imports. An error where the main file can't be read.
-    pub fn load(request: &Request, limits: Limits) -> (Loader, Result<(), Diagnostic>) {
+    pub fn load(
+        request: &Request,
+        limits: Limits,
+        memory: &'m mut Memory,
+        cancel: &'m AtomicBool,
+    ) -> (Loader<'m>, Result<(), Diagnostic>) {
         let mut loader = Loader {
             sources: Sources::new(),
             files: Vec::new(),
@@ -53,17 +63,19 @@ impl Loader {
             digests: HashMap::new(),
             importing: Vec::new(),
             limits,
+            memory,
+            cancel,
         };
         let read = loader.main(&request.main);
         (loader, read)
     }
 
     fn main(&mut self, input: &Input) -> Result<(), Diagnostic> {
-        let (name, path, bytes) = match input {
+        let (name, path, bytes, digest) = match input {
             Input::Text { name, bytes, folder } => {
                 self.folder = folder.clone();
                 self.allowed.extend(folder.canonicalize());
-                (name.clone(), None, bytes.clone())
+                (name.clone(), None, bytes.clone(), *blake3::hash(bytes).as_bytes())
             }
             Input::File(path) => {
                 let file = self.depend(path.clone());
@@ -71,28 +83,28 @@ impl Loader {
                 let unreadable = |e: &io::Error| Diagnostic::error(format!("can't read `{name}`: {}", reason(e)));
                 let full = path.canonicalize().map_err(|e| unreadable(&e))?;
                 let bytes = read(&full, self.limits.file_bytes).map_err(|e| unreadable(&e))?;
-                self.was_read(file, &full, *blake3::hash(&bytes).as_bytes());
+                let digest = self.was_read(file, &full, &bytes);
                 self.folder = full.parent().unwrap_or(Path::new("/")).to_owned();
                 // The project is the current folder where the file is in it, else the file's own.
                 let here = std::env::current_dir().and_then(|d| d.canonicalize()).ok();
                 let root = here.filter(|d| full.starts_with(d)).unwrap_or_else(|| self.folder.clone());
                 self.allowed.push(root);
                 self.importing.push((full.clone(), name.clone()));
-                (name, Some(full), bytes)
+                (name, Some(full), bytes, digest)
             }
         };
-        let file = self.add(name, path, bytes);
-        self.module(file);
+        let (file, is_text) = self.add(name, path, bytes);
+        self.module(file, is_text.then_some(digest));
         Ok(())
     }
 
-    /// Adds a text; where it isn't UTF-8, an error and what can be shown of it.
-    fn add(&mut self, name: String, path: Option<PathBuf>, bytes: Vec<u8>) -> FileId {
+    /// Adds a text, and says whether it is one; where it isn't UTF-8, an error and what can be shown of it.
+    fn add(&mut self, name: String, path: Option<PathBuf>, bytes: Vec<u8>) -> (FileId, bool) {
         // Byte-order marks: UTF-8's is no part of the text, UTF-16's tells that this is another encoding.
         let utf16 = bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF");
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes);
         match String::from_utf8(bytes) {
-            Ok(text) => self.sources.add(Source { name, path, text }),
+            Ok(text) => (self.sources.add(Source { name, path, text }), true),
             Err(e) => {
                 let at = e.utf8_error().valid_up_to();
                 let byte = e.as_bytes().get(at).copied().unwrap_or(0);
@@ -109,25 +121,36 @@ impl Loader {
                         .at(Span::new(file, at..at + 3), what)
                         .note("save it as UTF-8 in your editor"),
                 );
-                file
+                (file, false)
             }
         }
     }
 
-    /// Parses a file, reads its imports, and adds it.
-    fn module(&mut self, file: FileId) -> usize {
-        let text = self.sources.get(file).text.clone();
-        let (statements, errors) =
-            if text.ends_with('\u{FFFD}') { (Vec::new(), Vec::new()) } else { parse(file, &text) };
-        self.errors.extend(errors);
+    /// Parses a file, unless it isn't text and has no `digest`; reads its imports, and adds it.
+    fn module(&mut self, file: FileId, digest: Option<[u8; 32]>) -> usize {
+        let parsed = digest.map(|digest| self.parse(file, digest)).unwrap_or_default();
+        self.errors.extend(parsed.errors.iter().cloned());
         let mut imports = Vec::new();
-        for s in &statements {
+        for s in &parsed.statements {
+            if self.is_cancelled() {
+                break;
+            }
             if let StatementKind::Import { path, .. } = &s.kind {
                 imports.push(self.import(file, path));
             }
         }
-        self.modules.push(Module { file, statements, imports });
+        self.modules.push(Module { file, parsed, imports });
         self.modules.len() - 1
+    }
+
+    fn parse(&mut self, file: FileId, digest: [u8; 32]) -> Arc<Parsed> {
+        let (text, cancel) = (&self.sources.get(file).text, self.cancel);
+        let parsed = self.memory.parses.get((digest, file), || {
+            let parsed = Arc::new(parse(file, text, cancel));
+            // What was broken off is no use to the next evaluation.
+            if cancel.load(Relaxed) { Err(parsed) } else { Ok(parsed) }
+        });
+        parsed.unwrap_or_else(|part| part)
     }
 
     fn import(&mut self, from: FileId, path: &WrittenPath) -> Option<usize> {
@@ -155,14 +178,14 @@ impl Loader {
         }
         let index = match read(&full, self.limits.file_bytes) {
             Ok(bytes) => {
-                self.was_read(dependency, &full, *blake3::hash(&bytes).as_bytes());
+                let digest = self.was_read(dependency, &full, &bytes);
                 self.importing.push((full.clone(), name.clone()));
                 let before = self.errors.len();
-                let file = self.add(name, Some(full.clone()), bytes);
+                let (file, is_text) = self.add(name, Some(full.clone()), bytes);
                 if let Some(d) = self.errors.get_mut(before) {
                     *d = d.clone().at(path.span, "imported here");
                 }
-                let index = self.module(file);
+                let index = self.module(file, is_text.then_some(digest));
                 self.importing.pop();
                 Some(index)
             }
@@ -176,6 +199,11 @@ impl Loader {
         index
     }
 
+    /// Whether nobody waits for the result any more.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Relaxed)
+    }
+
     /// Notes a file that is looked for; its number in `files`.
     fn depend(&mut self, path: PathBuf) -> usize {
         if let Some(known) = self.files.iter().position(|f| f.path == path) {
@@ -185,10 +213,12 @@ impl Loader {
         self.files.len() - 1
     }
 
-    /// Notes what was read at `full`, links followed, for file number `file`.
-    pub fn was_read(&mut self, file: usize, full: &Path, digest: [u8; 32]) {
+    /// Notes what was read at `full`, links followed, for file number `file`; gives its digest.
+    pub fn was_read(&mut self, file: usize, full: &Path, bytes: &[u8]) -> [u8; 32] {
+        let digest = *blake3::hash(bytes).as_bytes();
         self.files[file].digest = Some(digest);
         self.digests.insert(full.to_owned(), digest);
+        digest
     }
 
     /// The file that a text names by a path relative to its own folder, how messages show it, and its number in `files`.

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Runs a program.
 pub struct Machine<'p> {
     pub program: &'p Program,
-    pub build: Build,
+    pub build: Build<'p>,
     pub limits: Limits,
     pub globals: Vec<Value>,
     /// The frames, one after the other.
@@ -29,7 +29,6 @@ pub struct Machine<'p> {
     pub collected: Vec<Vec<NodeId>>,
     /// The lists being made.
     pub lists: Vec<EcoVec<Value>>,
-    pub steps: u64,
     pub text_bytes: usize,
     /// Lists, records and functions made so far that hold others.
     pub containers: usize,
@@ -86,6 +85,9 @@ impl<'p> Machine<'p> {
         self.collected.push(Vec::new());
         let mut go_on = true;
         for s in &module.statements {
+            if self.build.is_cancelled() {
+                return false;
+            }
             if s.for_scene && !main {
                 continue;
             }
@@ -123,6 +125,7 @@ impl<'p> Machine<'p> {
                 self.errors.push(*d);
                 return false;
             }
+            Stop::Cancelled => return false,
             _ => {}
         }
         // One more than is shown, so that it can be said that there are more.
@@ -133,6 +136,9 @@ impl<'p> Machine<'p> {
     #[cold]
     #[expect(clippy::boxed_local, reason = "faults travel boxed")]
     pub fn locate(&self, fault: Box<Fault>, span: Span, args: &[(u16, Node)]) -> Stop {
+        if self.build.is_cancelled() {
+            return Stop::Cancelled;
+        }
         let fault = *fault;
         let main = fault
             .argument
@@ -200,16 +206,7 @@ impl<'p> Machine<'p> {
     /// Counts a turn of a loop or a call.
     #[inline]
     pub fn step(&mut self, span: Span) -> Result<(), Stop> {
-        self.steps += 1;
-        if self.steps > self.limits.steps { Err(self.fail(self.out_of_steps(), span)) } else { Ok(()) }
-    }
-
-    #[cold]
-    fn out_of_steps(&self) -> Box<Fault> {
-        Fault::budget(
-            format!("the scene takes more than {} steps to make", self.limits.steps),
-            "a step is a call or a turn of a loop; usually a loop doesn't end, or runs too often",
-        )
+        self.build.spend(1).map_err(|f| self.fail(f, span))
     }
 
     /// Counts a value that holds others, where `inner` is one that does so itself.
@@ -241,8 +238,8 @@ impl<'p> Machine<'p> {
     }
 }
 
-impl Host for Machine<'_> {
-    fn build(&mut self) -> &mut Build {
+impl<'p> Host<'p> for Machine<'p> {
+    fn build(&mut self) -> &mut Build<'p> {
         &mut self.build
     }
     fn place(&mut self) -> Place {
@@ -259,8 +256,7 @@ impl Host for Machine<'_> {
         out
     }
     fn spend(&mut self, n: u64) -> Result<(), Stop> {
-        self.steps += n;
-        if self.steps > self.limits.steps { Err(Stop::Fault(self.out_of_steps())) } else { Ok(()) }
+        Ok(self.build.spend(n)?)
     }
     fn hold(&mut self, inner: &Value) -> Result<(), Stop> {
         let here = self.here;

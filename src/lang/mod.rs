@@ -19,6 +19,7 @@ mod finish;
 mod limits;
 mod load;
 mod machine;
+mod memory;
 mod ops;
 mod param;
 mod parse;
@@ -37,6 +38,7 @@ mod ty;
 mod value;
 pub mod word;
 
+pub use memory::Memory;
 pub use reference::{chapter, chapter_topics, chapters, help, topics};
 pub use request::{Dependency, Evaluated, Failure, Input, Param, ParamKind, Request};
 
@@ -49,6 +51,7 @@ use load::Loader;
 use machine::{Machine, SetValue};
 use resolve::Resolver;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 use value::Value;
 
@@ -57,10 +60,33 @@ pub fn evaluate(request: &Request) -> Result<Evaluated, Failure> {
     evaluate_within(request, Limits::default())
 }
 
-/// Evaluates on a thread of its own, whose stack fits the limits on nesting.
+/// As [`evaluate`], with what earlier evaluations left in `memory`. `None` where `cancel` was set meanwhile, and stays so
+/// until this returns: nobody waits for the result, so it is given up soon.
+pub fn evaluate_again(
+    request: &Request,
+    memory: &mut Memory,
+    cancel: &AtomicBool,
+) -> Option<Result<Evaluated, Failure>> {
+    let result = evaluate_on_thread(request, Limits::default(), memory, cancel);
+    let cancelled = cancel.load(Relaxed);
+    memory.end(result.is_ok() && !cancelled);
+    (!cancelled).then_some(result)
+}
+
 fn evaluate_within(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
+    evaluate_on_thread(request, limits, &mut Memory::default(), &AtomicBool::new(false))
+}
+
+/// Evaluates on a thread of its own, whose stack fits the limits on nesting.
+fn evaluate_on_thread(
+    request: &Request,
+    limits: Limits,
+    memory: &mut Memory,
+    cancel: &AtomicBool,
+) -> Result<Evaluated, Failure> {
     std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, || run(request, limits));
+        let run = || run(request, limits, memory, cancel);
+        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, run);
         match thread.map(|t| t.join()) {
             Ok(Ok(result)) => result,
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
@@ -74,9 +100,10 @@ fn evaluate_within(request: &Request, limits: Limits) -> Result<Evaluated, Failu
     })
 }
 
-fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
+/// Whatever it gives where `cancel` is set meanwhile, it isn't to be shown.
+fn run(request: &Request, limits: Limits, memory: &mut Memory, cancel: &AtomicBool) -> Result<Evaluated, Failure> {
     let start = Instant::now();
-    let (mut loader, read) = Loader::load(request, limits);
+    let (mut loader, read) = Loader::load(request, limits, memory, cancel);
     if let Err(d) = read {
         return Err(Failure {
             diagnostics: vec![d],
@@ -87,7 +114,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
     }
     let mut errors = std::mem::take(&mut loader.errors);
     let main = loader.modules.last().map_or(FileId(0), |m| m.file);
-    if errors.is_empty() && loader.modules.last().is_some_and(|m| m.statements.is_empty()) {
+    if errors.is_empty() && loader.modules.last().is_some_and(|m| m.parsed.statements.is_empty()) {
         let d = Diagnostic::error("the scene is empty").at(Span::new(main, 0..0), "");
         errors.push(d.note("a scene needs something to show: `sphere()`"));
     }
@@ -95,7 +122,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
     let mut resolver = Resolver::default();
     let last = loader.modules.len().saturating_sub(1);
     for (i, m) in loader.modules.iter().enumerate() {
-        resolver.file(&m.statements, &m.imports, i == last);
+        resolver.file(&m.parsed.statements, &m.imports, i == last, cancel);
     }
     let nodes = set_nodes(request, &mut loader.sources, &mut resolver);
     errors.append(&mut resolver.errors);
@@ -113,7 +140,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
         .collect::<HashMap<_, _>>();
     let mut machine = Machine {
         program: &program,
-        build: Build::new(limits),
+        build: Build::new(limits, cancel),
         limits,
         globals: vec![Value::Unset; program.globals as usize],
         stack: Vec::new(),
@@ -121,7 +148,6 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
         nesting: 0,
         collected: Vec::new(),
         lists: Vec::new(),
-        steps: 0,
         text_bytes: 0,
         containers: 0,
         here: Span::new(main, 0..0),
@@ -137,10 +163,10 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
             break;
         }
     }
-    let Machine { mut build, params, errors: failed, .. } = machine;
+    let Machine { build: Build { mut scene, pictures, .. }, params, errors: failed, .. } = machine;
     errors.extend(failed);
     if errors.is_empty() {
-        errors = finish::finish(&mut build, &mut loader);
+        errors = finish::finish(&mut scene, &pictures, &mut loader);
     }
     let exports = resolver.exports.last().is_some_and(|e| !e.names.is_empty());
     let Loader { sources, files, .. } = loader;
@@ -148,7 +174,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
         return Err(Failure { diagnostics: in_order(errors, limits.errors), sources, files, main_unreadable: false });
     }
     let mut warnings = Vec::new();
-    let is_empty = build.scene.instance_count() == 0;
+    let is_empty = scene.instance_count() == 0;
     let is_library = is_empty && exports;
     if is_empty {
         let d = Diagnostic::warning("there is nothing to show").at(Span::new(main, 0..0), "");
@@ -158,7 +184,7 @@ fn run(request: &Request, limits: Limits) -> Result<Evaluated, Failure> {
         });
     }
     let evaluate_seconds = start.elapsed().as_secs_f64();
-    Ok(Evaluated { scene: build.scene, sources, params, warnings, is_library, files, parse_seconds, evaluate_seconds })
+    Ok(Evaluated { scene, sources, params, warnings, is_library, files, parse_seconds, evaluate_seconds })
 }
 
 type SetNode = (String, String, Span, Result<Node, Diagnostic>);
@@ -191,7 +217,7 @@ fn unknown_params(loader: &Loader, nodes: &[SetNode]) -> Diagnostics {
         .modules
         .last()
         .into_iter()
-        .flat_map(|m| &m.statements)
+        .flat_map(|m| &m.parsed.statements)
         .filter_map(|s| match &s.kind {
             StatementKind::Param(p) => Some(p.name.name.as_str()),
             StatementKind::Broken { name: Some(name) } => Some(name.as_str()),

@@ -15,8 +15,8 @@ type Made = Result<Value, Box<Fault>>;
 /// `a op b`, all but `and` and `or`, which needn't look at `b`.
 pub fn binary(op: Op, a: &Value, b: &Value, build: &mut Build, span: Span) -> Made {
     match op {
-        Op::Equal => a.equals(b).map(Value::Bool),
-        Op::NotEqual => a.equals(b).map(|e| Value::Bool(!e)),
+        Op::Equal => a.equals(b, build).map(Value::Bool),
+        Op::NotEqual => a.equals(b, build).map(|e| Value::Bool(!e)),
         Op::Less | Op::LessEqual | Op::Greater | Op::GreaterEqual => compare(op, a, b, build),
         Op::Range | Op::RangeInclusive => range(op, a, b, build),
         _ => arithmetic(op, a, b, build, span),
@@ -142,8 +142,10 @@ fn arithmetic(op: Op, a: &Value, b: &Value, build: &mut Build, span: Span) -> Ma
             patterns(op, a, b, build, span)
         }
         (List(x), List(y)) => lists(op, x, y, build, span),
-        (List(x), Number(_)) if op != Op::Add && op != Op::Subtract => each(x, |v| arithmetic(op, v, b, build, span)),
-        (Number(_), List(y)) if op == Op::Multiply => each(y, |v| arithmetic(op, a, v, build, span)),
+        (List(x), Number(_)) if op != Op::Add && op != Op::Subtract => {
+            each(x, build, |v, build| arithmetic(op, v, b, build, span))
+        }
+        (Number(_), List(y)) if op == Op::Multiply => each(y, build, |v, build| arithmetic(op, a, v, build, span)),
         (List(_), Vec3(_)) | (Vec3(_), List(_)) => Err(lengths(a, b)),
         _ => Err(unfit(op, a, b, build)),
     }
@@ -164,19 +166,34 @@ fn lists(op: Op, a: &EcoVec<Value>, b: &EcoVec<Value>, build: &mut Build, span: 
     if a.len() != b.len() {
         return Err(lengths(&Value::List(a.clone()), &Value::List(b.clone())));
     }
+    build.spend(list_steps(a))?;
     let mut out = EcoVec::with_capacity(a.len());
-    for (x, y) in a.iter().zip(b) {
+    for (i, (x, y)) in a.iter().zip(b).enumerate() {
+        pause(i, build)?;
         out.push(arithmetic(op, x, y, build, span)?);
     }
     Ok(Value::list(out))
 }
 
-fn each(items: &EcoVec<Value>, mut f: impl FnMut(&Value) -> Made) -> Made {
+fn each(items: &EcoVec<Value>, build: &mut Build, f: impl Fn(&Value, &mut Build) -> Made) -> Made {
+    build.spend(list_steps(items))?;
     let mut out = EcoVec::with_capacity(items.len());
-    for v in items {
-        out.push(f(v)?);
+    for (i, v) in items.iter().enumerate() {
+        pause(i, build)?;
+        out.push(f(v, build)?);
     }
     Ok(Value::list(out))
+}
+
+/// What arithmetic on a list costs. Lists within lists may be one and the same many times over: even a short one counts.
+pub fn list_steps(items: &EcoVec<Value>) -> u64 {
+    1 + items.len() as u64 / 4
+}
+
+/// To be called with every number from 0 up: looks from time to time whether to go on.
+pub fn pause(i: usize, build: &mut Build) -> Result<(), Box<Fault>> {
+    // Some microseconds' worth.
+    if i % 1024 == 1023 { build.spend(0) } else { Ok(()) }
 }
 
 fn lengths(a: &Value, b: &Value) -> Box<Fault> {
@@ -229,10 +246,13 @@ mod tests {
     use super::*;
     use crate::diag::FileId;
     use crate::lang::limits::Limits;
+    use std::sync::atomic::AtomicBool;
 
     fn run(op: Op, a: Value, b: Value) -> Result<String, String> {
         let span = Span { file: FileId(0), start: 0, end: 0 };
-        binary(op, &a, &b, &mut Build::new(Limits::default()), span).map(|v| v.show(99)).map_err(|f| f.message)
+        binary(op, &a, &b, &mut Build::new(Limits::default(), &AtomicBool::new(false)), span)
+            .map(|v| v.show(99))
+            .map_err(|f| f.message)
     }
 
     #[test]

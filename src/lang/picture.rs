@@ -1,19 +1,18 @@
-//! Opens picture files: PNG and JPEG, known by their content.
+//! Decodes picture files: PNG and JPEG, known by their content.
 
 use super::limits::Limits;
-use super::load::{read, reason};
+use super::load::reason;
 use crate::scene::{Image, range};
 use image::{ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 
 /// Largest picture file: more than an uncompressed one of the most texels.
-const FILE_BYTES: usize = 1 << 30;
+pub const FILE_BYTES: usize = 1 << 30;
 
-/// Reads a picture; why not, in words, otherwise.
-pub fn open(path: &Path, limits: &Limits) -> Result<Image, String> {
-    let bytes = read(path, FILE_BYTES).map_err(|e| reason(&e))?;
-    let reader = ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| reason(&e))?;
+/// The picture that `bytes` are, read at `path`; why they are none, in words, otherwise.
+pub fn decode(path: &Path, bytes: &[u8], digest: [u8; 32], limits: &Limits) -> Result<Image, String> {
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| reason(&e))?;
     let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) = reader.format() else {
         return Err("it is neither a PNG nor a JPEG file".into());
     };
@@ -26,8 +25,8 @@ pub fn open(path: &Path, limits: &Limits) -> Result<Image, String> {
     if width.max(height) > range::LARGEST_SIDE || u64::from(width) * u64::from(height) > limits.image_texels {
         return Err(format!("it is too large: {width} × {height}"));
     }
-    let decoded = ImageReader::with_format(Cursor::new(&bytes), format).decode().map_err(|_| damaged())?;
+    let decoded = ImageReader::with_format(Cursor::new(bytes), format).decode().map_err(|_| damaged())?;
     let rgb = decoded.into_rgb8();
     let texels = rgb.pixels().map(|p| p.0).collect();
-    Ok(Image { path: path.to_owned(), digest: *blake3::hash(&bytes).as_bytes(), width, height, texels })
+    Ok(Image { path: path.to_owned(), digest, width, height, texels })
 }

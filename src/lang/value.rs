@@ -1,6 +1,8 @@
 //! The values of the language. Cloning one costs at most a reference count.
 
+use super::build::Build;
 use super::fault::Fault;
+use super::ops::{list_steps, pause};
 use crate::scene::{AntiAliasing, Color, MaterialId, NodeId, PatternId};
 use ecow::{EcoString, EcoVec};
 use std::fmt::Write;
@@ -215,7 +217,7 @@ impl Value {
     }
 
     /// Whether two values are equal; functions can't be compared.
-    pub fn equals(&self, other: &Value) -> Result<bool, Box<Fault>> {
+    pub fn equals(&self, other: &Value, build: &mut Build) -> Result<bool, Box<Fault>> {
         Ok(match (self, other) {
             (Value::Number(a), Value::Number(b)) | (Value::Angle(a), Value::Angle(b)) => a == b,
             (Value::Bool(a), Value::Bool(b)) => a == b,
@@ -227,17 +229,20 @@ impl Value {
             (Value::Node(a), Value::Node(b)) => a == b,
             (Value::Vec3(a), Value::Vec3(b)) => a == b,
             (Value::List(a), Value::List(b)) if a.len() == b.len() => {
-                for (x, y) in a.iter().zip(b) {
-                    if !x.equals(y)? {
+                build.spend(list_steps(a))?;
+                for (i, (x, y)) in a.iter().zip(b).enumerate() {
+                    pause(i, build)?;
+                    if !x.equals(y, build)? {
                         return Ok(false);
                     }
                 }
                 true
             }
             (Value::Record(a), Value::Record(b)) if a.len() == b.len() => {
+                build.spend(1)?;
                 for (k, x) in a.iter() {
                     match b.get(k) {
-                        Some(y) if x.equals(y)? => {}
+                        Some(y) if x.equals(y, build)? => {}
                         _ => return Ok(false),
                     }
                 }

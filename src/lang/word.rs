@@ -104,9 +104,9 @@ impl std::fmt::Debug for Run {
 }
 
 /// What a running word may ask of the evaluator.
-pub(super) trait Host {
+pub(super) trait Host<'c> {
     /// The scene so far.
-    fn build(&mut self) -> &mut Build;
+    fn build(&mut self) -> &mut Build<'c>;
     /// The call and the calls around it.
     fn place(&mut self) -> Place;
     /// The first parameter's argument, or the call where that can't be told.

@@ -43,6 +43,11 @@ impl Bvh {
         Bvh { nodes, leaves }
     }
 
+    /// Primitives and their boxes, in the order of the leaves.
+    pub fn leaves(&self) -> &[(u32, Bounds)] {
+        &self.leaves
+    }
+
     /// Number of primitives.
     pub fn len(&self) -> usize {
         self.leaves.len()

@@ -11,7 +11,7 @@ use crate::scene::{Camera, Projection};
 use glam::DVec3;
 
 /// The camera's axes, and how much of space it sees. The camera stands at the origin.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CameraFrame {
     right: [f64; 3],
     up: [f64; 3],

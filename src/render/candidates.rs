@@ -2,7 +2,8 @@
 
 use super::batch::RayBatch;
 use super::bounds::{Bounds, smaller};
-use super::cull::{Cone, bounds_of, margin};
+use super::cull::{bounds_of, margin};
+use super::footprint::Beam;
 use super::world::World;
 use crate::math::real::{each3, three};
 use crate::math::{Elem, Lane};
@@ -54,9 +55,10 @@ impl Candidates {
     }
 }
 
-/// Finds what the rays of a batch may meet: the cone of their directions, from the ball around their origins.
+/// Finds what the rays of a batch may meet: the cone of their directions, from the ball around their origins. Gives that
+/// region.
 #[inline(always)]
-pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &mut Candidates) {
+pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &mut Candidates) -> Beam {
     let margin = margin(L::UNIT_ROUNDOFF);
     let origins = bounds_of(&rays.o, rays.len);
     let unit = |i: usize| -> [f64; 3] {
@@ -69,6 +71,8 @@ pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &m
     let axis = sum.map(|x| x / len);
     let cosine = |d: [f64; 3]| d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2];
     let cos = (0..rays.len).map(|i| cosine(unit(i))).fold(1.0, smaller);
-    let cone = Cone::of_directions(origins.centre(), origins.radius(), axis, cos, margin);
+    let beam = Beam { origins, axis, cos };
+    let cone = beam.cone(margin);
     out.gather(world, |b| cone.may_meet(b), |n, offset| cone.may_reach(&origins, n, offset));
+    beam
 }

@@ -4,8 +4,17 @@
 use crate::math::hash::KeyedHash;
 use crate::scene::{Filter, Mapping, PatternId, PatternKind, Scene};
 
-/// The digest of every material of the scene.
-pub fn material_digests(scene: &Scene) -> Vec<u64> {
+/// A material's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MaterialDigest {
+    /// Of all of it.
+    pub all: u64,
+    /// Of what it lets through.
+    pub transmit: u64,
+}
+
+/// The digests of every material of the scene.
+pub fn material_digests(scene: &Scene) -> Vec<MaterialDigest> {
     let mut patterns: Vec<u64> = Vec::with_capacity(scene.patterns.len());
     for p in &scene.patterns {
         let digest = pattern_digest(scene, &p.kind, &patterns);
@@ -15,7 +24,8 @@ pub fn material_digests(scene: &Scene) -> Vec<u64> {
     let digest = |m: &crate::scene::Material| {
         let slots = [m.color, m.ambient, m.diffuse, m.specular, m.shininess, m.reflect, m.transmit];
         let rest = [m.ior.map_or(0, f64::to_bits), m.bump.map_or(0, of)];
-        content_key(slots.into_iter().map(of).chain(rest))
+        let all = content_key(slots.into_iter().map(of).chain(rest));
+        MaterialDigest { all, transmit: of(m.transmit) }
     };
     scene.materials.iter().map(digest).collect()
 }

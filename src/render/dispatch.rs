@@ -3,6 +3,7 @@
 //! Nothing here changes a bit of the picture: a fused multiply-add gives the same result from the processor and from the
 //! library that stands in for it, only faster.
 
+use super::footprint::{Footprint, Recorder};
 use super::options::{Crop, Options, Progress, RayCounts, Rendered};
 use super::tile::TileWorker;
 use super::world::World;
@@ -15,7 +16,37 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// Traces the picture; `None` where `cancel` was set meanwhile. Its bits depend on `world` and on size, anti-aliasing, depth
 /// and precision of `options`, on nothing else.
 pub fn render(world: &World, options: &Options, progress: &dyn Progress, cancel: &AtomicBool) -> Option<Rendered> {
-    render_on(Instructions::best(), world, options, progress, cancel)
+    let part = options.crop_or_all();
+    let mut film = Film::new(part.width, part.height);
+    let work = Work { world, options, progress, cancel, tiles: None };
+    let (rays, threads) = work.run(Instructions::best(), &mut film, None)?;
+    Some(Rendered { film, rays, threads })
+}
+
+/// Traces the tiles marked in `tiles`, in the order of [`tiles_of`], into `film`, and leaves in `footprints` what each
+/// depended on.
+pub fn render_tiles(
+    world: &World,
+    options: &Options,
+    (progress, cancel): (&dyn Progress, &AtomicBool),
+    film: &mut Film,
+    tiles: &[bool],
+    footprints: &mut [Footprint],
+) -> Option<RayCounts> {
+    let work = Work { world, options, progress, cancel, tiles: Some(tiles) };
+    work.run(Instructions::best(), film, Some(footprints)).map(|(rays, _)| rays)
+}
+
+/// The tiles of a picture, row by row.
+pub fn tiles_of(options: &Options) -> Vec<Crop> {
+    let (part, side) = (options.crop_or_all(), options.tile_side());
+    let start = |from: u32, length: u32| (0..length.div_ceil(side)).map(move |k| from + k * side);
+    let size = |at: u32, from: u32, length: u32| side.min(from + length - at);
+    let row = |y: u32| {
+        let height = size(y, part.y, part.height);
+        start(part.x, part.width).map(move |x| Crop { x, y, width: size(x, part.x, part.width), height })
+    };
+    start(part.y, part.height).flat_map(row).collect()
 }
 
 /// What the tile's loop is compiled for.
@@ -39,80 +70,101 @@ impl Instructions {
     }
 }
 
-fn render_on(
-    instructions: Instructions,
-    world: &World,
-    options: &Options,
-    progress: &dyn Progress,
-    cancel: &AtomicBool,
-) -> Option<Rendered> {
-    let run = || match options.precision {
-        Precision::F64 => render_in::<f64>(instructions, world, options, progress, cancel),
-        Precision::F32 => render_in::<f32>(instructions, world, options, progress, cancel),
-    };
-    // Patterns may nest deep, and each level takes a frame of the stack.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).stack_size(STACK).build();
-    match pool {
-        Ok(pool) => pool.install(run),
-        Err(_) => run(), // no threads to be had: this one does it
-    }
+/// What is to be done.
+struct Work<'w> {
+    world: &'w World,
+    options: &'w Options,
+    progress: &'w dyn Progress,
+    cancel: &'w AtomicBool,
+    /// Which tiles; `None` for all.
+    tiles: Option<&'w [bool]>,
+}
+
+/// A tile, the rows of the film that it fills, and where its footprint goes.
+struct Job<'f> {
+    tile: Crop,
+    rows: Vec<&'f mut [[f32; 3]]>,
+    footprint: Option<&'f mut Footprint>,
 }
 
 /// Stack of a worker: patterns nest up to the language's limit, at a few hundred bytes a level.
 const STACK: usize = 16 << 20;
 
-/// A tile and the rows of the film it fills.
-type Job<'f> = (Crop, Vec<&'f mut [[f32; 3]]>);
-
-fn render_in<L: Lane>(
-    instructions: Instructions,
-    world: &World,
-    options: &Options,
-    progress: &dyn Progress,
-    cancel: &AtomicBool,
-) -> Option<Rendered> {
-    let part = options.crop_or_all();
-    let mut film = Film::new(part.width, part.height);
-    let rays = jobs(&mut film, part, options.tile_side())
-        .into_par_iter()
-        .map_init(
-            || TileWorker::<L>::new(world, options),
-            |worker, (tile, mut rows)| {
-                if cancel.load(Relaxed) {
-                    return RayCounts::default();
-                }
-                worker.tracer.counts = RayCounts::default();
-                render_tile(instructions, worker, tile, &mut rows);
-                progress.advance(tile.width as u64 * tile.height as u64);
-                worker.tracer.counts
-            },
-        )
-        .reduce(RayCounts::default, RayCounts::plus);
-    if cancel.load(Relaxed) {
-        return None;
+impl Work<'_> {
+    /// Rays traced, and by how many threads.
+    fn run(
+        &self,
+        on: Instructions,
+        film: &mut Film,
+        footprints: Option<&mut [Footprint]>,
+    ) -> Option<(RayCounts, usize)> {
+        let run = || match self.options.precision {
+            Precision::F64 => self.trace::<f64>(on, film, footprints),
+            Precision::F32 => self.trace::<f32>(on, film, footprints),
+        };
+        // Patterns may nest deep, and each level takes a frame of the stack.
+        let threads = self.options.threads.unwrap_or(0);
+        match rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build() {
+            Ok(pool) => pool.install(run),
+            Err(_) => run(), // no threads to be had: this one does it
+        }
     }
-    Some(Rendered { film, rays, threads: rayon::current_num_threads() })
-}
 
-/// Cuts the film into tiles. Tiles lie on a grid of the whole picture, but that is only for the order of work.
-fn jobs(film: &mut Film, part: Crop, side: u32) -> Vec<Job<'_>> {
-    let (columns, width) = (part.width.div_ceil(side), part.width as usize);
-    let mut jobs: Vec<Job<'_>> = Vec::new();
-    for (y, row) in film.pixels.chunks_mut(width).enumerate() {
-        let y = y as u32;
-        if y.is_multiple_of(side) {
-            for k in 0..columns {
-                let (x, w) = (k * side, side.min(part.width - k * side));
-                let tile = Crop { x: part.x + x, y: part.y + y, width: w, height: side.min(part.height - y) };
-                jobs.push((tile, Vec::with_capacity(side as usize)));
+    fn trace<L: Lane>(
+        &self,
+        on: Instructions,
+        film: &mut Film,
+        footprints: Option<&mut [Footprint]>,
+    ) -> Option<(RayCounts, usize)> {
+        let record = footprints.is_some();
+        let recorder = || if record { Recorder::new(self.world.primitives.len()) } else { Recorder::off() };
+        let worker = || TileWorker::<L>::new(self.world, self.options, self.cancel, recorder());
+        let jobs = self.jobs(film, footprints);
+        let work = |worker: &mut TileWorker<'_, L>, mut job: Job<'_>| {
+            if self.cancel.load(Relaxed) {
+                return RayCounts::default();
+            }
+            worker.tracer.counts = RayCounts::default();
+            render_tile(on, worker, job.tile, &mut job.rows);
+            if let Some(footprint) = job.footprint {
+                *footprint = worker.tracer.recorder().take();
+            }
+            if !self.cancel.load(Relaxed) {
+                self.progress.finished(job.tile, &job.rows);
+            }
+            worker.tracer.counts
+        };
+        let rays = jobs.into_par_iter().map_init(worker, work).reduce(RayCounts::default, RayCounts::plus);
+        if self.cancel.load(Relaxed) {
+            return None;
+        }
+        Some((rays, rayon::current_num_threads()))
+    }
+
+    /// Cuts the film into tiles, those of [`tiles_of`] that are to be traced.
+    fn jobs<'f>(&self, film: &'f mut Film, footprints: Option<&'f mut [Footprint]>) -> Vec<Job<'f>> {
+        let (part, side) = (self.options.crop_or_all(), self.options.tile_side() as usize);
+        let mut footprints = footprints.map(|all| all.iter_mut());
+        let tiles = tiles_of(self.options).into_iter();
+        let mut jobs: Vec<Job<'f>> = tiles
+            .map(|tile| {
+                let footprint = footprints.as_mut().and_then(Iterator::next);
+                Job { tile, rows: Vec::with_capacity(tile.height as usize), footprint }
+            })
+            .collect();
+        let (columns, width) = ((part.width as usize).div_ceil(side), part.width as usize);
+        for (y, row) in film.pixels.chunks_mut(width).enumerate() {
+            let first = y / side * columns;
+            for (piece, job) in row.chunks_mut(side).zip(&mut jobs[first..]) {
+                job.rows.push(piece);
             }
         }
-        let first = jobs.len() - columns as usize;
-        for (piece, job) in row.chunks_mut(side as usize).zip(&mut jobs[first..]) {
-            job.1.push(piece);
+        if let Some(wanted) = self.tiles {
+            let mut wanted = wanted.iter();
+            jobs.retain(|_| wanted.next() == Some(&true));
         }
+        jobs
     }
-    jobs
 }
 
 /// Renders one tile.
@@ -192,11 +244,15 @@ mod tests {
         for precision in [Precision::F64, Precision::F32] {
             let settings = Options::from_settings(&scene.settings);
             let options = Options { width: 64, height: 48, precision, ..settings };
+            let cancel = AtomicBool::new(false);
+            let work = Work { world: &world, options: &options, progress: &Silent, cancel: &cancel, tiles: None };
             let on = |instructions| {
-                render_on(instructions, &world, &options, &Silent, &AtomicBool::new(false)).expect("not cancelled")
+                let mut film = Film::new(64, 48);
+                let (rays, _) = work.run(instructions, &mut film, None).expect("not cancelled");
+                (film, rays)
             };
             let (best, baseline) = (on(Instructions::best()), on(Instructions::Baseline));
-            assert!(best.rays.transmitted > 1000 && best.film == baseline.film);
+            assert!(best.1.transmitted > 1000 && best.0 == baseline.0);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! How much of a light arrives: shadow rays, and what transparent objects let through.
 
 use super::candidates::Candidates;
+use super::footprint::Recorder;
 use super::ray::Own;
 use super::shape::Visit;
 use super::surface_pattern::PatternFrame;
@@ -67,6 +68,7 @@ pub fn occlusion<L: Lane>(
     rays: &ShadowRays<'_, L>,
     active: L::Mask,
     scratch: &mut Shadow,
+    recorder: &mut Recorder,
 ) -> [L; 3] {
     let (o, l, distance) = (rays.o, rays.l, rays.distance);
     let mut seen = [L::one(); 3];
@@ -74,14 +76,14 @@ pub fn occlusion<L: Lane>(
     let mut open = Open { mask: active, rays };
     scratch.transparent.clear();
     for &k in &occluders.ids {
-        open.test(world, k, &mut scratch.transparent);
+        open.test(world, k, &mut scratch.transparent, recorder);
         if !open.mask.any() {
             return [L::zero(); 3];
         }
     }
     if occluders.tree {
         world.bvh.traverse(o, l, open.reach(), |k| {
-            open.test(world, k, &mut scratch.transparent);
+            open.test(world, k, &mut scratch.transparent, recorder);
             open.reach()
         });
     }
@@ -93,6 +95,9 @@ pub fn occlusion<L: Lane>(
     }
     scratch.transparent.sort_unstable();
     for &k in &scratch.transparent {
+        if recorder.is_on() {
+            recorder.shaded(k); // met or not: seldom more than a few
+        }
         let primitive = &world.primitives[k as usize];
         match world.constant_transmission(k) {
             Some(factor) => {
@@ -127,11 +132,14 @@ struct Open<'r, L: Lane> {
 impl<L: Lane> Open<'_, L> {
     /// Tests primitive `k`, or puts it aside where it is transparent.
     #[inline(always)]
-    fn test(&mut self, world: &World, k: u32, transparent: &mut Vec<u32>) {
+    fn test(&mut self, world: &World, k: u32, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
         match world.constant_transmission(k) {
             Some([0.0, 0.0, 0.0]) => {
                 let mut met = Blocked { distance: self.rays.distance, blocked: L::Mask::splat(false) };
                 self.rays.crossings(world, k, &mut met);
+                if recorder.is_on() && (self.mask & met.blocked).any() {
+                    recorder.shaded(k);
+                }
                 self.mask = self.mask & !met.blocked;
             }
             Some([1.0, 1.0, 1.0]) => {}

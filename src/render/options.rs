@@ -64,15 +64,15 @@ impl Options {
 
 /// Told of finished work; called from worker threads.
 pub trait Progress: Sync {
-    /// `pixels` more are done.
-    fn advance(&self, pixels: u64);
+    /// A tile is finished: its place in the picture, and its rows.
+    fn finished(&self, tile: Crop, rows: &[&mut [[f32; 3]]]);
 }
 
 /// A [`Progress`] that tells nobody.
 pub struct Silent;
 
 impl Progress for Silent {
-    fn advance(&self, _pixels: u64) {}
+    fn finished(&self, _tile: Crop, _rows: &[&mut [[f32; 3]]]) {}
 }
 
 /// How many rays were traced.

@@ -2,6 +2,7 @@
 
 use super::batch::{HitColumns, NONE, RayBatch};
 use super::candidates::Candidates;
+use super::footprint::Recorder;
 use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::Slot;
 use super::options::{Options, Probe};
@@ -49,7 +50,7 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
             return [0.0; 3];
         }
         let rays = ShadowRays { source: id, part, o: from, l, distance, touched: &light.touched };
-        occlusion(world, &everything, &rays, Bool(true), &mut scratch)
+        occlusion(world, &everything, &rays, Bool(true), &mut scratch, &mut Recorder::off())
     };
     let lights = world.lights.iter().map(|l| (l.node, arriving(l))).collect();
     let (node, material) = world.origins[id as usize];

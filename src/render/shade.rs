@@ -1,8 +1,10 @@
 //! Shades the hits of one object: points and normals first, then light by light, then colour and the rays that follow.
 
 use super::batch::{Column, Column3, RayBatch, column, column3, load3, store3};
+use super::bounds::Bounds;
 use super::candidates::Candidates;
 use super::cull::{Shaft, bounds_of, margin};
+use super::footprint::Recorder;
 use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::{Slot, Surfacing};
 use super::optics::{dielectric, mirrored};
@@ -54,11 +56,13 @@ pub struct ShadeScratch<E> {
     spaces: Vec<Rows>,
     shadow: Shadow,
     occluders: Candidates,
+    /// Notes what the rays depend on.
+    pub recorder: Recorder,
 }
 
 impl<E: Elem> ShadeScratch<E> {
     /// Room for batches of `n` rays.
-    pub fn new(n: usize) -> Self {
+    pub fn new(n: usize, recorder: Recorder) -> Self {
         ShadeScratch {
             p: column3(n),
             n: column3(n),
@@ -71,6 +75,7 @@ impl<E: Elem> ShadeScratch<E> {
             spaces: Vec::new(),
             shadow: Shadow::default(),
             occluders: Candidates::default(),
+            recorder,
         }
     }
 }
@@ -93,8 +98,12 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
         for c in s.diffuse.iter_mut().chain(&mut s.specular) {
             c[..hits.rays.len].fill(L::Elem::default());
         }
+        let points = bounds_of(&s.p, hits.rays.len);
+        if s.recorder.is_on() {
+            s.recorder.lit(points);
+        }
         for light in &world.lights {
-            illuminate::<L>(world, light, surfacing, &hits, &frame, s, shadow_rays);
+            illuminate::<L>(world, (light, &points), surfacing, &hits, &frame, s, shadow_rays);
         }
     }
     finish::<L>(world, surfacing, &hits, &frame, s, radiance, children);
@@ -132,11 +141,11 @@ fn surfaces<L: Lane, const AT_EYE: bool>(
     }
 }
 
-/// Adds one light's share to the diffuse and specular sums.
+/// Adds one light's share to the diffuse and specular sums; `points` holds all hits.
 #[inline(always)]
 fn illuminate<L: Lane>(
     world: &World,
-    light: &PointLight,
+    (light, points): (&PointLight, &Bounds),
     surfacing: &Surfacing,
     hits: &Hits<'_, L::Elem>,
     frame: &PatternFrame<'_>,
@@ -144,9 +153,8 @@ fn illuminate<L: Lane>(
     shadow_rays: &mut u64,
 ) {
     let n_hits = hits.rays.len;
-    let points = bounds_of(&s.p, n_hits);
-    let shaft = Shaft::new(&points, light.at, margin(L::UNIT_ROUNDOFF));
-    s.occluders.gather(world, |b| shaft.may_meet(b), |n, offset| shaft.may_cross(&points, n, offset));
+    let shaft = Shaft::new(points, light.at, margin(L::UNIT_ROUNDOFF));
+    s.occluders.gather(world, |b| shaft.may_meet(b), |n, offset| shaft.may_cross(points, n, offset));
     let (at, color): ([L; 3], [L; 3]) = (splat3(light.at), splat3(light.color));
     // A light in this very surface grazes it: what rounding makes of the right angle doesn't count.
     let least = L::splat(if light.touched.contains(&hits.id) { RESIDUE } else { 0.0 });
@@ -163,7 +171,7 @@ fn illuminate<L: Lane>(
             *shadow_rays += front.bits().count_ones() as u64;
             let part = L::load(&hits.part[g..]);
             let rays = ShadowRays { source: hits.id, part, o, l, distance, touched: &light.touched };
-            let seen = occlusion(world, &s.occluders, &rays, front, &mut s.shadow);
+            let seen = occlusion(world, &s.occluders, &rays, front, &mut s.shadow, &mut s.recorder);
             let zero = L::zero();
             let arrives: [L; 3] = three(|c| L::select(front, color[c] * seen[c], zero));
             let sum = load3::<L>(&s.diffuse, g);

@@ -3,10 +3,12 @@
 use super::batch::NONE;
 use super::camera::PixelGrid;
 use super::cull::margin;
+use super::footprint::Recorder;
 use super::options::{Crop, Options};
 use super::tracer::Tracer;
 use super::world::World;
 use crate::math::{Elem, Lane};
+use std::sync::atomic::AtomicBool;
 
 /// A worker that renders tiles.
 pub struct TileWorker<'w, L: Lane> {
@@ -21,13 +23,13 @@ pub struct TileWorker<'w, L: Lane> {
 
 impl<'w, L: Lane> TileWorker<'w, L> {
     /// A worker for tiles of up to [`Options::tile_side`]² pixels.
-    pub fn new(world: &'w World, options: &Options) -> Self {
+    pub fn new(world: &'w World, options: &Options, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         let n = (options.tile_side() * options.tile_side()) as usize;
         TileWorker {
             world,
             grid: world.camera.grid(options),
             side: options.aa.side(),
-            tracer: Tracer::new(world, options.max_depth, n),
+            tracer: Tracer::new(world, options.max_depth, n, cancel, recorder),
             sums: vec![[0.0; 3]; n],
         }
     }
@@ -47,12 +49,14 @@ impl<'w, L: Lane> TileWorker<'w, L> {
             let pixel = resolve(sum, samples);
             rows.iter_mut().for_each(|row| row.fill(pixel));
             self.tracer.counts.camera += samples as u64 * n as u64;
+            self.tracer.recorder().saw_background();
             return;
         }
         self.sums[..n].fill([0.0; 3]);
         for sy in 0..self.side {
             for sx in 0..self.side {
                 self.camera_rays(tile, [sx, sy]);
+                self.tracer.recorder().sample();
                 for c in &mut self.tracer.radiance {
                     c[..n].fill(L::Elem::default());
                 }

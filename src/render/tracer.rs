@@ -7,16 +7,19 @@
 
 use super::batch::{Column, Column3, HitColumns, NONE, RayBatch, column3, load3};
 use super::candidates::{Candidates, narrow_to_batch};
+use super::footprint::Recorder;
 use super::options::RayCounts;
 use super::ray::Own;
 use super::shade::{Children, Hits, ShadeScratch};
 use super::shape::Visit;
 use super::world::World;
 use crate::math::{Elem, Lane, Real};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Traces batches; one for each worker thread.
 pub struct Tracer<'w, L: Lane> {
     world: &'w World,
+    cancel: &'w AtomicBool,
     max_depth: usize,
     levels: Vec<Level<L::Elem>>,
     /// Light gathered by each pixel of the tile.
@@ -58,19 +61,26 @@ impl<E: Elem> Level<E> {
 
 impl<'w, L: Lane> Tracer<'w, L> {
     /// A tracer for batches of up to `capacity` rays, `max_depth` reflections and transmissions deep.
-    pub fn new(world: &'w World, max_depth: u32, capacity: usize) -> Self {
+    /// It stops within a batch once `cancel` is set, and notes what rays do in `recorder`.
+    pub fn new(world: &'w World, max_depth: u32, capacity: usize, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         Tracer {
             world,
+            cancel,
             max_depth: max_depth as usize,
             levels: vec![Level::new(capacity)],
             radiance: column3(capacity),
             candidates: Candidates::default(),
             narrowed: Candidates::default(),
-            scratch: ShadeScratch::new(capacity),
+            scratch: ShadeScratch::new(capacity, recorder),
             groups: Groups::new(capacity),
             counts: RayCounts::default(),
             capacity,
         }
+    }
+
+    /// Where it notes what rays do.
+    pub fn recorder(&mut self) -> &mut Recorder {
+        &mut self.scratch.recorder
     }
 
     /// The batch that the next [`trace`](Tracer::trace) starts with.
@@ -88,6 +98,12 @@ impl<'w, L: Lane> Tracer<'w, L> {
         self.process::<AT_EYE>(0, &candidates);
         let mut level = 0;
         loop {
+            if self.cancel.load(Relaxed) {
+                for level in &mut self.levels {
+                    (level.mirrored.len, level.transmitted.len) = (0, 0);
+                }
+                break;
+            }
             let at = &self.levels[level];
             if at.mirrored.len > 0 {
                 self.counts.reflected += at.mirrored.len as u64;
@@ -108,7 +124,10 @@ impl<'w, L: Lane> Tracer<'w, L> {
             let children = if parent.mirrored.len > 0 { &mut parent.mirrored } else { &mut parent.transmitted };
             std::mem::swap(children, &mut below[0].rays);
             children.len = 0;
-            narrow_to_batch::<L>(self.world, &self.levels[level].rays, &mut narrowed);
+            let beam = narrow_to_batch::<L>(self.world, &self.levels[level].rays, &mut narrowed);
+            if self.scratch.recorder.is_on() {
+                self.scratch.recorder.beam(beam);
+            }
             self.process::<false>(level, &narrowed);
         }
         (self.candidates, self.narrowed) = (candidates, narrowed);
@@ -120,6 +139,12 @@ impl<'w, L: Lane> Tracer<'w, L> {
         let at = &mut self.levels[level];
         nearest::<L, AT_EYE>(self.world, candidates, &at.rays, &mut at.hits);
         self.groups.sort(&at.hits.id, at.rays.len);
+        if self.scratch.recorder.is_on() {
+            self.scratch.recorder.saw(self.groups.found.iter().map(|f| f.0));
+            if self.groups.missed > 0 {
+                self.scratch.recorder.saw_background();
+            }
+        }
         for k in 0..self.groups.missed {
             let i = self.groups.order[k] as usize;
             let slot = at.rays.slot[i].to_f64() as usize;

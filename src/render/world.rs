@@ -6,6 +6,7 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
+use super::census::PrimitiveKey;
 use super::digest::{content_key, material_digests};
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
@@ -19,6 +20,8 @@ use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
 use glam::DVec3;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The scene as the tracer sees it.
 pub struct World {
@@ -76,7 +79,7 @@ pub(super) struct PointLight {
 
 /// A primitive with what it is numbered by.
 struct Entry {
-    key: (u64, u64),
+    key: PrimitiveKey,
     placed: Placed,
     instance: Instance,
     made: Made,
@@ -92,19 +95,39 @@ struct Made {
 impl World {
     /// Prepares `scene` as seen by `camera`.
     pub fn build(scene: &Scene, camera: &Camera) -> World {
+        match World::build_keyed(scene, camera, &AtomicBool::new(false)) {
+            Some((world, _)) => world,
+            None => unreachable!("nothing cancels it"),
+        }
+    }
+
+    /// Prepares `scene` as seen by `camera`, and says what each primitive is known by; `None` where `cancel` was set
+    /// meanwhile.
+    pub(super) fn build_keyed(
+        scene: &Scene,
+        camera: &Camera,
+        cancel: &AtomicBool,
+    ) -> Option<(World, Vec<PrimitiveKey>)> {
+        let go_on = || if cancel.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         let to_camera = Affine::translation(-camera.from);
         let (mut shapes, mut lights) = (Vec::new(), Vec::new());
-        scene.for_each_instance(|i| match &scene.node(i.node).kind {
-            NodeKind::Light(light) => {
-                let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
-                let color = (light.color * light.power).0;
-                if color != [0.0; 3] {
-                    lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
+        let visited = scene.try_for_each_instance(|i| {
+            match &scene.node(i.node).kind {
+                NodeKind::Light(light) => {
+                    let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
+                    let color = (light.color * light.power).0;
+                    if color != [0.0; 3] {
+                        lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
+                    }
                 }
+                NodeKind::Shape(_) => shapes.push(i),
+                NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
             }
-            NodeKind::Shape(_) => shapes.push(i),
-            NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
+            go_on()
         });
+        if visited.is_break() {
+            return None;
+        }
         lights.sort_by_key(|l| content_key(l.at.iter().chain(&l.color).map(|x| x.to_bits())));
 
         let mut world = World {
@@ -128,22 +151,31 @@ impl World {
         let mut entries = Vec::with_capacity(shapes.len());
         for instance in shapes {
             let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
+            if go_on().is_break() {
+                return None;
+            }
             let world_from_object = to_camera.compose(&instance.world_from_object);
             for placed in place(shape, &world_from_object) {
-                let key = placed_key(&placed, digests[instance.material.0 as usize]);
+                let material = digests[instance.material.0 as usize];
+                let geometry = placed_key(&placed);
+                let key = PrimitiveKey { geometry, material: material.all, transmit: material.transmit };
                 let (centre, half_height) = middle(shape);
                 let made = Made { world_from_object, centre, half_height };
                 entries.push(Entry { key, placed, instance: instance.clone(), made });
             }
         }
         entries.sort_by_key(|e| e.key);
+        let keys = entries.iter().map(|e| e.key).collect();
         let mut bounded = Vec::with_capacity(entries.len());
         for entry in entries {
             world.add(entry, &numbers, &mut bounded);
+            if go_on().is_break() {
+                return None;
+            }
         }
         world.bvh = Bvh::build(bounded);
         world.find_touched_surfaces();
-        world
+        Some((world, keys))
     }
 
     /// Compiles the materials that shapes wear; gives each scene material its number here.
@@ -304,9 +336,10 @@ fn transposed(map: &Affine) -> [[f64; 3]; 3] {
     std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
 }
 
-/// What a placed shape is numbered by: all of its content.
-fn placed_key(p: &Placed, material: u64) -> (u64, u64) {
-    let mut bits = vec![material];
+/// What a placed shape is numbered by: all of its content but its look, so that painting never brings another of two
+/// coincident surfaces to the front.
+fn placed_key(p: &Placed) -> (u64, u64) {
+    let mut bits = Vec::with_capacity(32);
     let mut add = |v: &[f64]| bits.extend(v.iter().map(|x| x.to_bits()));
     match &p.form {
         Form::Framed(kind) => match kind {

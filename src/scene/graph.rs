@@ -4,6 +4,7 @@
 use super::{Camera, Color, Image, Light, Material, MaterialId, Pattern, PatternId, Settings, Shape};
 use crate::diag::Place;
 use crate::math::Affine;
+use std::ops::ControlFlow;
 
 /// Names a node of a [`Scene`]. Children have smaller ids than their parents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -111,6 +112,12 @@ impl Scene {
     /// How many [`Instance`]s there are; saturating, and found without visiting them: a few nested groups can make more
     /// than any memory holds.
     pub fn instance_count(&self) -> u64 {
+        let counts = self.instance_counts();
+        self.roots.iter().fold(0u64, |n, r| n.saturating_add(counts[r.0 as usize]))
+    }
+
+    /// How many [`Instance`]s each node makes; saturating.
+    fn instance_counts(&self) -> Vec<u64> {
         let mut counts = vec![0u64; self.nodes.len()];
         for (i, node) in self.nodes.iter().enumerate() {
             counts[i] = match &node.kind {
@@ -119,32 +126,48 @@ impl Scene {
                 NodeKind::Transformed { child, .. } => counts[child.0 as usize],
             };
         }
-        self.roots.iter().fold(0u64, |n, r| n.saturating_add(counts[r.0 as usize]))
+        counts
     }
 
     /// Calls `visit` for every shape and light, in the order of the text, with its transforms composed.
     pub fn for_each_instance(&self, mut visit: impl FnMut(Instance)) {
-        let mut stack: Vec<Instance> = self
-            .roots
-            .iter()
-            .rev()
-            .map(|&node| Instance { node, world_from_object: Affine::IDENTITY, material: MaterialId(0) })
-            .collect();
-        while let Some(mut at) = stack.pop() {
-            let node = self.node(at.node);
-            // The innermost material wins, so a node's own replaces what came from around it.
-            at.material = node.material.unwrap_or(at.material);
-            match &node.kind {
-                NodeKind::Shape(_) | NodeKind::Light(_) => visit(at),
-                NodeKind::Group(children) => {
-                    stack.extend(children.iter().rev().map(|&node| Instance { node, ..at.clone() }));
-                }
-                NodeKind::Transformed { child, parent_from_child } => {
-                    at.world_from_object = at.world_from_object.compose(parent_from_child);
-                    at.node = *child;
-                    stack.push(at);
+        let _ = self.try_for_each_instance(|i| {
+            visit(i);
+            ControlFlow::<()>::Continue(())
+        });
+    }
+
+    /// As [`for_each_instance`](Scene::for_each_instance), until `visit` breaks off.
+    pub fn try_for_each_instance<B>(&self, mut visit: impl FnMut(Instance) -> ControlFlow<B>) -> ControlFlow<B> {
+        // Groups of nothing can multiply to more than anyone waits for.
+        let counts = self.instance_counts();
+        let mut around = vec![(self.roots.iter(), Affine::IDENTITY, MaterialId(0))];
+        while let Some((nodes, world_from_object, material)) = around.last_mut() {
+            let Some(node) = nodes.next() else {
+                around.pop();
+                continue;
+            };
+            let mut at = Instance { node: *node, world_from_object: *world_from_object, material: *material };
+            while counts[at.node.0 as usize] > 0 {
+                let node = self.node(at.node);
+                // The innermost material wins, so a node's own replaces what came from around it.
+                at.material = node.material.unwrap_or(at.material);
+                match &node.kind {
+                    NodeKind::Shape(_) | NodeKind::Light(_) => {
+                        visit(at)?;
+                        break;
+                    }
+                    NodeKind::Group(children) => {
+                        around.push((children.iter(), at.world_from_object, at.material));
+                        break;
+                    }
+                    NodeKind::Transformed { child, parent_from_child } => {
+                        at.world_from_object = at.world_from_object.compose(parent_from_child);
+                        at.node = *child;
+                    }
                 }
             }
         }
+        ControlFlow::Continue(())
     }
 }

@@ -123,7 +123,7 @@ pub struct Report {
     pub rays: u64,
     /// Tiles that were traced again, of how many.
     pub tiles: (usize, usize),
-    /// Bytes of the finished picture file.
+    /// Bytes of the finished picture, as a PNG of 8 bits.
     pub bytes: usize,
 }
 

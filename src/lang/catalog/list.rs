@@ -142,7 +142,7 @@ pub const WORDS: &[Word] = &[
         ],
         doc: "A list in rising order of its numbers, angles or texts, or of those that `by` makes of its values; equal ones keep their order.",
         example: "let rising = sort([3, 1, 2])      // → [1, 2, 3]\nlet longest_last = sort([\"mirror\", \"ball\"], by: len)      // → [\"ball\", \"mirror\"]",
-        run: Run::Call(sort),
+        run: Run::Call(super::sort::sort),
     },
     Word {
         name: "reverse",
@@ -151,8 +151,11 @@ pub const WORDS: &[Word] = &[
         doc: "A list from its end to its beginning.",
         example: "let down = reverse(1..=3)     // → [3, 2, 1]",
         run: Run::Call(|host, a| {
-            let mut out = made(host, &a[0], |_, item| Ok(Some(item)))?;
-            out.make_mut().reverse();
+            let mut out = EcoVec::new();
+            for i in (0..a[0].length().unwrap_or(0)).rev() {
+                host.spend(1)?;
+                push(host, &mut out, a[0].item(i).unwrap_or(Value::None))?;
+            }
             Ok(Value::list(out))
         }),
     },
@@ -313,39 +316,6 @@ fn steps(host: &mut dyn Host, a: &[Value]) -> Outcome {
     Ok(Value::list(out))
 }
 
-fn sort(host: &mut dyn Host, a: &[Value]) -> Outcome {
-    let mut keyed: Vec<(Value, Value)> = Vec::new();
-    each(host, &a[0], |host, item| {
-        let key = if a.given(1) { host.call(&a[1], std::slice::from_ref(&item))? } else { item.clone() };
-        let like = keyed.first().map_or(&key, |(first, _)| first);
-        if !matches!(
-            (like, &key),
-            (Value::Number(_), Value::Number(_))
-                | (Value::Angle(_), Value::Angle(_))
-                | (Value::Text(_), Value::Text(_))
-        ) {
-            let fault = match like.kind() == key.kind() {
-                true => Fault::new(format!("`sort` can't order {}", key.kind())).note(
-                    "it orders numbers, angles or texts; for others give `by:` a function that makes one of them",
-                ),
-                false => Fault::new(format!("`sort` can't order {} and {}", like.kind(), key.kind())),
-            };
-            return Err(fault.on(usize::from(a.given(1))).into());
-        }
-        keyed.push((key, item));
-        Ok(true)
-    })?;
-    // Numbers are finite, but for the two zeros, which are equal.
-    keyed.sort_by(|(x, _), (y, _)| match (x, y) {
-        (Value::Number(x), Value::Number(y)) | (Value::Angle(x), Value::Angle(y)) => {
-            x.partial_cmp(y).unwrap_or(std::cmp::Ordering::Equal)
-        }
-        (Value::Text(x), Value::Text(y)) => x.cmp(y),
-        _ => std::cmp::Ordering::Equal,
-    });
-    Ok(Value::list(keyed.into_iter().map(|(_, item)| item).collect()))
-}
-
 fn contains(host: &mut dyn Host, a: &[Value]) -> Outcome {
     if let (Value::Text(text), Value::Text(part)) = (&a[0], &a[1]) {
         return Ok(Value::Bool(text.contains(part.as_str())));
@@ -355,8 +325,8 @@ fn contains(host: &mut dyn Host, a: &[Value]) -> Outcome {
         return Err(Fault::new(format!("`contains` looks in a list, or for a text in a text, got {got}")).on(0).into());
     }
     let mut found = false;
-    each(host, &a[0], |_, item| {
-        found = item.equals(&a[1])?;
+    each(host, &a[0], |host, item| {
+        found = item.equals(&a[1], host.build())?;
         Ok(!found)
     })?;
     Ok(Value::Bool(found))

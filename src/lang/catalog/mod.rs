@@ -17,6 +17,7 @@ mod random;
 mod scatter;
 mod setting;
 mod shape;
+mod sort;
 mod topic;
 mod transform;
 mod vector;

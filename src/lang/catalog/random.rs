@@ -1,7 +1,9 @@
 //! Randomness that is a function of its keys: the same keys, the same value, on every machine and after every edit.
 
 use super::pattern::{OCTAVES, SEED};
+use crate::lang::build::Build;
 use crate::lang::fault::{Fault, Outcome};
+use crate::lang::ops::{list_steps, pause};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Host, Kind, Param, Run, Ty, Word, required, rest};
 use crate::math::fun::{cbrt, cos_deg, sin_deg, sqrt};
@@ -20,7 +22,7 @@ pub const WORDS: &[Word] = &[
         params: &[KEY, KEYS],
         doc: "A random number from 0 to below 1, always the same for the same keys.",
         example: "for i in 0..9 { sphere(at: [i, rand(i, \"height\"), 0], r: 0.2 + 0.2 * rand(i, \"size\")) }\ncamera(from: [4, 2, 12], at: [4, 0.5, 0])\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| Ok(Value::Number(hash(a)?.unit()))),
+        run: Run::Call(|host, a| Ok(Value::Number(hash_of(host, a, 0)?.unit()))),
     },
     Word {
         name: "pick",
@@ -28,12 +30,12 @@ pub const WORDS: &[Word] = &[
         params: &[LIST, KEY, KEYS],
         doc: "A random value of a list or range, always the same for the same keys.",
         example: "for i in 0..9 {\n  let color = pick([tomato, gold, teal], i, \"color\")\n  sphere(at: [i, 0, 0], r: 0.4, mat: matte(color))\n}\ncamera(from: [4, 2, 12], at: [4, 0, 0])\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| {
+        run: Run::Call(|host, a| {
             let n = a[0].length().unwrap_or(0);
             if n == 0 {
                 return Err(Fault::new("the list is empty").on(0).into());
             }
-            let i = index(hash_of(a, 1)?, n);
+            let i = index(hash_of(host, a, 1)?, n);
             Ok(a[0].item(i).unwrap_or(Value::None))
         }),
     },
@@ -51,7 +53,7 @@ pub const WORDS: &[Word] = &[
         params: &[KEY, KEYS],
         doc: "A random point on the sphere of radius 1 around the origin, always the same for the same keys.",
         example: "for i in 0..200 { sphere(at: 2 * on_sphere(i), r: 0.1) }\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| Ok(Value::Vec3(on_sphere(hash(a)?)))),
+        run: Run::Call(|host, a| Ok(Value::Vec3(on_sphere(hash_of(host, a, 0)?)))),
     },
     Word {
         name: "in_sphere",
@@ -59,9 +61,9 @@ pub const WORDS: &[Word] = &[
         params: &[KEY, KEYS],
         doc: "A random point in the sphere of radius 1 around the origin, always the same for the same keys.",
         example: "for i in 0..200 { sphere(at: 2 * in_sphere(i), r: 0.1) }\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| {
+        run: Run::Call(|host, a| {
             // Volumes grow with the third power of the radius.
-            let h = hash(a)?;
+            let h = hash_of(host, a, 0)?;
             let r = cbrt(h.with(3).unit());
             Ok(Value::Vec3(on_sphere(h).map(|x| x * r)))
         }),
@@ -77,8 +79,8 @@ pub const WORDS: &[Word] = &[
         ],
         doc: "A random point in a box along the axes, always the same for the same keys.",
         example: "for i in 0..100 { sphere(at: in_box([-4, 0, -4], [4, 1, 4], i), r: 0.2) }\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| {
-            let (h, from, to) = (hash_of(a, 2)?, a.vec3(0), a.vec3(1));
+        run: Run::Call(|host, a| {
+            let (h, from, to) = (hash_of(host, a, 2)?, a.vec3(0), a.vec3(1));
             Ok(Value::Vec3([0, 1, 2].map(|i| {
                 let u = h.with(i as u64).unit();
                 (1.0 - u) * from[i] + u * to[i]
@@ -97,18 +99,14 @@ pub const WORDS: &[Word] = &[
     },
 ];
 
-/// The hash of all arguments.
-fn hash(keys: &[Value]) -> Result<KeyedHash, Box<Fault>> {
-    hash_of(keys, 0)
-}
-
 /// The hash of the arguments from the one numbered `first` on.
-pub fn hash_of(args: &[Value], first: usize) -> Result<KeyedHash, Box<Fault>> {
-    let given = args.iter().enumerate().skip(first).filter(|(_, k)| !matches!(k, Value::Unset));
-    given.into_iter().try_fold(KeyedHash::new(), |h, (i, k)| add(h, k).map_err(|f| f.on(i)))
+pub fn hash_of(host: &mut dyn Host, args: &[Value], first: usize) -> Result<KeyedHash, Box<Fault>> {
+    let build = host.build();
+    let mut given = args.iter().enumerate().skip(first).filter(|(_, k)| !matches!(k, Value::Unset));
+    given.try_fold(KeyedHash::new(), |h, (i, k)| add(h, k, build).map_err(|f| f.on(i)))
 }
 
-fn add(h: KeyedHash, key: &Value) -> Result<KeyedHash, Box<Fault>> {
+fn add(h: KeyedHash, key: &Value, build: &mut Build) -> Result<KeyedHash, Box<Fault>> {
     Ok(match key {
         Value::Number(n) => h.with_f64(*n),
         Value::Angle(n) => h.with(1).with_f64(*n),
@@ -116,7 +114,13 @@ fn add(h: KeyedHash, key: &Value) -> Result<KeyedHash, Box<Fault>> {
         Value::Text(t) => h.with_text(t),
         Value::Color(c) => c.0.iter().fold(h.with(4), |h, x| h.with_f64(*x)),
         Value::Vec3(v) => v.iter().fold(h.with(3), |h, x| h.with_f64(*x)),
-        Value::List(items) => items.iter().try_fold(h.with(items.len() as u64), add)?,
+        Value::List(items) => {
+            build.spend(list_steps(items))?;
+            items.iter().enumerate().try_fold(h.with(items.len() as u64), |h, (i, item)| {
+                pause(i, build)?;
+                add(h, item, build)
+            })?
+        }
         other => return Err(Fault::new(format!("{} can't be a key of something random", other.kind()))),
     })
 }
@@ -135,11 +139,12 @@ pub fn on_sphere(h: KeyedHash) -> [f64; 3] {
 
 /// Fisher and Yates' exchange of each position with one of those before it.
 fn shuffle(host: &mut dyn Host, a: &[Value]) -> Outcome {
-    let h = hash_of(a, 1)?;
+    let h = hash_of(host, a, 1)?;
     let mut out = EcoVec::new();
     super::list::each(host, &a[0], |host, item| super::list::push(host, &mut out, item).map(|()| true))?;
     let items = out.make_mut();
     for i in (1..items.len()).rev() {
+        pause(i, host.build())?;
         items.swap(i, index(h.with(i as u64), i as u64 + 1) as usize);
     }
     Ok(Value::list(out))

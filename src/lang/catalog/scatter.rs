@@ -29,7 +29,7 @@ const TRIES: u64 = 30;
 
 fn scatter(host: &mut dyn Host, a: &[Value]) -> Outcome {
     let (from, to, distance) = (a.vec3(0).to_array(), a.vec3(1).to_array(), a.number(2));
-    let hash = hash_of(a, 3)?;
+    let hash = hash_of(host, a, 3)?;
     let low: [f64; 3] = std::array::from_fn(|i| if from[i] < to[i] { from[i] } else { to[i] });
     let high: [f64; 3] = std::array::from_fn(|i| if from[i] < to[i] { to[i] } else { from[i] });
     let axes: Vec<usize> = (0..3).filter(|i| low[*i] < high[*i]).collect();

@@ -12,6 +12,7 @@ use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
 use builder::Builder;
 use pest::Parser as _;
 use recover::{bound_name, recover};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 #[derive(pest_derive::Parser)]
 #[grammar = "../grammar/scene.pest"]
@@ -20,11 +21,22 @@ struct Grammar;
 /// The edition of the language that this program speaks.
 const EDITION: &str = "1";
 
-/// Parses a whole file. Statements with errors are in the list too, so that their names aren't unknown later.
-pub fn parse(file: FileId, text: &str) -> (Vec<Statement>, Diagnostics) {
+/// A parsed file.
+#[derive(Debug, Default)]
+pub struct Parsed {
+    /// Those with errors too, so that their names aren't unknown later.
+    pub statements: Vec<Statement>,
+    pub errors: Diagnostics,
+}
+
+/// Parses a whole file; only a part of it where `cancel` is set meanwhile.
+pub fn parse(file: FileId, text: &str, cancel: &AtomicBool) -> Parsed {
     let (prepared, mut errors) = scan::prepare(file, text);
     let mut statements = Vec::new();
     for (i, piece) in prepared.statements.iter().enumerate() {
+        if cancel.load(Relaxed) {
+            break;
+        }
         let source = prepared.text.get(piece.range.clone()).unwrap_or("");
         let span = Span::new(file, piece.range.clone());
         if source.split_ascii_whitespace().next() == Some("rtdsl") && !piece.broken {
@@ -36,12 +48,12 @@ pub fn parse(file: FileId, text: &str) -> (Vec<Statement>, Diagnostics) {
             statements.push(broken());
             continue;
         }
-        match recover(file, source, piece.range.start, &mut errors) {
+        match recover(file, source, piece.range.start, &mut errors, cancel) {
             Some(s) => statements.push(s),
             None => statements.push(broken()),
         }
     }
-    (statements, errors)
+    Parsed { statements, errors }
 }
 
 /// Parses a single expression: a value of `--set`.
@@ -106,7 +118,7 @@ mod tests {
         }
     }
     fn errors(text: &str) -> Vec<String> {
-        parse(FileId(0), text).1.into_iter().map(|d| d.message).collect()
+        parse(FileId(0), text, &AtomicBool::new(false)).errors.into_iter().map(|d| d.message).collect()
     }
 
     #[test]

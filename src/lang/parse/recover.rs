@@ -8,13 +8,20 @@ use crate::lang::syntax;
 use ecow::EcoString;
 use pest::Parser as _;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Most bytes that are parsed again and again to find further mistakes in one statement.
 const RECOVERY_BYTES: usize = 4 << 20;
 
 /// Parses an outermost statement. One that is wrong within a block is left out of the block, and the rest tried again,
 /// so that every broken statement of a block is reported.
-pub(super) fn recover(file: FileId, source: &str, offset: usize, errors: &mut Diagnostics) -> Option<Statement> {
+pub(super) fn recover(
+    file: FileId,
+    source: &str,
+    offset: usize,
+    errors: &mut Diagnostics,
+    cancel: &AtomicBool,
+) -> Option<Statement> {
     let mut text = std::borrow::Cow::Borrowed(source);
     let mut holes: Vec<Hole> = Vec::new();
     let mut spent = 0;
@@ -32,7 +39,7 @@ pub(super) fn recover(file: FileId, source: &str, offset: usize, errors: &mut Di
         errors.push(error);
         spent += text.len();
         // The braces of an import hold names, not statements.
-        let again = spent <= RECOVERY_BYTES && !source.starts_with("import");
+        let again = spent <= RECOVERY_BYTES && !cancel.load(Relaxed) && !source.starts_with("import");
         let part = at.filter(|_| again).and_then(|at| block_statement(&text, at))?;
         if part.is_empty() || text[part.clone()].trim().is_empty() {
             return None;

@@ -13,6 +13,7 @@ use super::scope::{At, Binding, Kind, Level, Scopes};
 use super::value::{FunctionId, Value};
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use ecow::EcoString;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a block does with its expressions.
 #[derive(Clone, Copy, PartialEq)]
@@ -64,15 +65,16 @@ pub struct Resolver {
 
 impl Resolver {
     /// Adds a file. `imports` has one entry an `import` statement: the module's index, or `None` where it couldn't be read.
-    pub fn file(&mut self, statements: &[Statement], imports: &[Option<usize>], main: bool) {
+    /// Only a part of it is added where `cancel` is set meanwhile.
+    pub fn file(&mut self, statements: &[Statement], imports: &[Option<usize>], main: bool, cancel: &AtomicBool) {
         self.scopes = Scopes::default();
         self.ended.clear();
         self.main = main;
         self.scopes.levels.push(Level::default());
         self.scopes.top().enter();
-        let functions = self.declare(statements, imports);
+        let functions = self.declare(statements, imports, cancel);
         let mut out = Vec::new();
-        for s in statements {
+        for s in statements.iter().take_while(|_| !cancel.load(Relaxed)) {
             if let Some(t) = self.top_statement(s) {
                 out.push(t);
             }
@@ -96,10 +98,15 @@ impl Resolver {
     }
 
     // Declarations of the top level, before anything is resolved: functions may use what comes later.
-    fn declare(&mut self, statements: &[Statement], imports: &[Option<usize>]) -> Vec<(u32, FunctionId)> {
+    fn declare(
+        &mut self,
+        statements: &[Statement],
+        imports: &[Option<usize>],
+        cancel: &AtomicBool,
+    ) -> Vec<(u32, FunctionId)> {
         let mut functions = Vec::new();
         let mut imports = imports.iter();
-        for s in statements {
+        for s in statements.iter().take_while(|_| !cancel.load(Relaxed)) {
             let (name, kind) = match &s.kind {
                 StatementKind::Let { name, .. } => (name, Kind::Let),
                 StatementKind::Var { name, .. } => (name, Kind::Var),

@@ -1,0 +1,220 @@
+//! What the painter puts on the live page, where there is one: coarse pictures first, then the picture tile by tile, then the
+//! finished one; messages and figures.
+
+use super::canvas::Canvas;
+use super::desk::Leash;
+use super::teller::{Finished, time_of_day};
+use crate::app::preview::board::{Message, Report};
+use crate::app::preview::{Board, Level, Picture, Shown};
+use crate::diag::{self, Diagnostic, Look, Severity, Sources};
+use crate::film::{self, Depth, Film, Format, Recipe};
+use crate::lang::Evaluated;
+use crate::render::{Options, Plan, Silent, World, render};
+use crate::scene::AntiAliasing;
+use std::io::Cursor;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The live page, if there is one.
+#[derive(Clone, Copy)]
+pub struct Show<'w> {
+    board: Option<&'w Board>,
+}
+
+/// What came of the wish to see something soon.
+pub enum Coarse {
+    /// A coarse picture.
+    Shown(Film),
+    /// Nobody is looking, or the whole picture will be there as soon.
+    NotNeeded,
+}
+
+/// Pixels of a coarse picture's side stand for so many of the full one's: it costs a sixteenth.
+const COARSE: u32 = 4;
+
+/// Side of the grid of rays from which on a full-size picture of one ray a pixel comes second: it costs a sixteenth at most.
+const FINE_GRID: u32 = 4;
+
+/// How often pages see how far the picture has come: smooth to the eye, and the encoding hardly costs.
+const PARTIAL_EVERY: Duration = Duration::from_millis(150);
+
+impl<'w> Show<'w> {
+    /// On `board`, or nowhere.
+    pub fn new(board: Option<&'w Board>) -> Show<'w> {
+        Show { board }
+    }
+
+    /// Whether there is a page.
+    pub fn is_on(&self) -> bool {
+        self.board.is_some()
+    }
+
+    /// Work on text number `text` begins.
+    pub fn begin(&self, text: u64) {
+        self.post(|p| (p.text, p.busy, p.progress) = (text, true, 0.0));
+    }
+
+    /// The newest text is a scene, with these values given to parameters.
+    pub fn evaluated(&self, e: &Evaluated, set: &[(String, String)]) {
+        self.post(|p| {
+            p.messages = messages(&e.warnings, &e.sources);
+            p.params = e.params.iter().map(Into::into).collect();
+            p.set_line = set_line(set);
+        });
+    }
+
+    /// The newest text is none.
+    pub fn failed(&self, diagnostics: &[Diagnostic], sources: &Sources) {
+        self.post(|p| {
+            p.messages = messages(diagnostics, sources);
+            p.busy = false;
+        });
+    }
+
+    /// Shows a coarse picture, where that is sooner than the final one.
+    pub fn coarse(&self, world: &World, text: u64, options: &Options, plan: &Plan, leash: &Leash) -> Coarse {
+        // Where few tiles are traced anew, the picture before with those in it is soon there.
+        if !self.is_on() || plan.traced() * 3 < plan.tiles() {
+            return Coarse::NotNeeded;
+        }
+        let (width, height) = (options.width, options.height);
+        let one_ray = Options { aa: AntiAliasing::Off, ..options.clone() };
+        let small = Options { width: width.div_ceil(COARSE), height: height.div_ceil(COARSE), ..one_ray.clone() };
+        let steps = [Some(small), (options.aa.side() >= FINE_GRID).then_some(one_ray)];
+        let mut last = None;
+        for step in steps.into_iter().flatten() {
+            let Some(rendered) = render(world, &step, &Silent, leash.cancel()) else { break };
+            self.picture(&rendered.film, Level::Coarse, (width, height), text);
+            leash.shown();
+            last = Some(rendered.film);
+        }
+        last.map_or(Coarse::NotNeeded, Coarse::Shown)
+    }
+
+    /// Does `trace`, and shows every now and then how far `canvas` has come, over what was there `before`.
+    pub fn while_tracing<T>(
+        &self,
+        canvas: &Canvas,
+        before: impl FnOnce() -> Film + Send,
+        (text, leash): (u64, &Leash),
+        trace: impl FnOnce() -> T,
+    ) -> T {
+        if !self.is_on() {
+            return trace();
+        }
+        let (done, bell) = (Mutex::new(false), Condvar::new());
+        let follow = || {
+            let mut film = Film::new(0, 0);
+            let mut before = Some(before);
+            let mut pause = PARTIAL_EVERY;
+            loop {
+                let guard = done.lock().unwrap_or_else(PoisonError::into_inner);
+                let wait = bell.wait_timeout_while(guard, pause, |done| !*done);
+                if *wait.unwrap_or_else(PoisonError::into_inner).0 || leash.since_cancelled().is_some() {
+                    return;
+                }
+                let start = Instant::now();
+                if let Some(before) = before.take() {
+                    film = before();
+                }
+                canvas.copy_to(&mut film);
+                self.post(|p| p.progress = canvas.progress());
+                self.picture(&film, Level::Partial, (film.width, film.height), text);
+                leash.shown();
+                // A tenth of one core at most, however large the picture.
+                pause = PARTIAL_EVERY.max(start.elapsed() * 10);
+            }
+        };
+        std::thread::scope(|scope| {
+            scope.spawn(follow);
+            let result = trace();
+            *done.lock().unwrap_or_else(PoisonError::into_inner) = true;
+            bell.notify_all();
+            result
+        })
+    }
+
+    /// The finished picture's file, and what it shows.
+    pub fn finished(&self, file: &[u8], (text, e, world, options): (u64, &Arc<Evaluated>, &Arc<World>, &Options)) {
+        let Some(board) = self.board else { return };
+        let id = board.keep_picture(file.to_vec());
+        let shown = Shown { picture: id, evaluated: Arc::clone(e), world: Arc::clone(world), options: options.clone() };
+        board.show(shown);
+        self.put(id, Level::Final, (options.width, options.height), text);
+        self.post(|p| (p.busy, p.progress) = (p.text != text && p.messages.is_empty(), 1.0));
+    }
+
+    /// What it took.
+    pub fn report(&self, f: &Finished, bytes: usize) {
+        let Finished { parse, evaluate, world, render, rays, tiles, .. } = *f;
+        self.post(|p| p.report = Some(Report { parse, evaluate, world, render, rays, tiles, bytes }));
+    }
+
+    fn picture(&self, film: &Film, level: Level, size: (u32, u32), text: u64) {
+        let Some(board) = self.board else { return };
+        let mut file = Cursor::new(Vec::new());
+        // Into memory it can't fail: a film has pixels.
+        if film::encode(film, Format::Png(Depth::Eight), &Recipe::new(), &mut file).is_ok() {
+            let id = board.keep_picture(file.into_inner());
+            self.put(id, level, size, text);
+        }
+    }
+
+    fn put(&self, id: u64, level: Level, (width, height): (u32, u32), text: u64) {
+        self.post(|p| {
+            if let Some(old) = &p.picture
+                && old.level == Level::Final
+                && old.text != text
+            {
+                p.previous = Some(old.clone());
+            }
+            p.picture = Some(Picture { id, level, width, height, text, made: time_of_day() });
+        });
+    }
+
+    fn post(&self, change: impl FnOnce(&mut crate::app::preview::Posted)) {
+        if let Some(board) = self.board {
+            board.post(change);
+        }
+    }
+}
+
+fn messages(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Message> {
+    let message = |d: &Diagnostic| Message {
+        severity: if d.severity == Severity::Error { "error" } else { "warning" },
+        message: d.message.clone(),
+        text: diag::print(std::slice::from_ref(d), sources, Look::Plain),
+        place: d.span().map_or(String::new(), |s| sources.location(s)),
+    };
+    diagnostics.iter().map(message).collect()
+}
+
+/// The `--set` arguments for a shell.
+fn set_line(set: &[(String, String)]) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-.,:/+%@=".contains(c);
+    let one = |(name, value): &(String, String)| {
+        let text = format!("{name}={value}");
+        let quoted = match text.chars().all(plain) {
+            true => text,
+            false => format!("'{}'", text.replace('\'', r"'\''")),
+        };
+        format!("--set {quoted}")
+    };
+    set.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn set_lines_survive_a_shell() {
+        let line = |set: &[(&str, &str)]| {
+            set_line(&set.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect::<Vec<_>>())
+        };
+        assert_eq!(line(&[]), "");
+        assert_eq!(line(&[("count", "50"), ("turn", "30deg")]), "--set count=50 --set turn=30deg");
+        assert_eq!(line(&[("color", "#ff0000")]), "--set 'color=#ff0000'");
+        assert_eq!(line(&[("title", "it's \"so\"")]), r#"--set 'title=it'\''s "so"'"#);
+    }
+}
