@@ -62,7 +62,11 @@ function onDrawn() {
   wipe.place();
 }
 
-listen(part("#view"), view, (pixel) => inspector.point(pixel), (pixel) => inspector.tap(pixel));
+listen(part("#view"), view, (pixel) => inspector.point(pixel), (pixel) => {
+  inspector.tap(pixel);
+  // On a phone what is told of it stands at the top of what scrolls.
+  if (pixel) scrollTo({ top: 0 });
+});
 
 const doing = {
   "zoom-in": () => view.step(1),
