@@ -16,6 +16,7 @@ mod eval;
 mod expected;
 mod fault;
 mod finish;
+pub mod highlight;
 mod limits;
 mod load;
 mod machine;
@@ -37,6 +38,7 @@ mod ty;
 mod value;
 pub mod word;
 
+pub use highlight::{Token, TokenClass, highlight};
 pub use reference::{chapter, chapter_topics, chapters, help, topics};
 pub use request::{Dependency, Evaluated, Failure, Input, Param, ParamKind, Request};
 
