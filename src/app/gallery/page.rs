@@ -18,8 +18,8 @@ pub struct ScenePage {
     pub root: String,
     /// The file itself.
     pub source: Option<String>,
-    /// The command that makes the picture.
-    pub command: Option<String>,
+    /// The words of the command that makes the picture, as a shell takes them.
+    pub command: Vec<String>,
     /// The picture.
     pub picture: Option<Picture>,
     /// The scene's parameters.

@@ -126,7 +126,7 @@ impl Site<'_> {
             description: prose(&text.title.description),
             root: "../".repeat(text.page.matches('/').count()),
             source: self.source(text, &text.path),
-            command: shown.map(|(f, _)| self.command(&text.path, &f.view)),
+            command: shown.map_or(Vec::new(), |(f, _)| self.command(&text.path, &f.view)),
             picture: shown.map(|(f, s)| Picture::new(between(&text.page, &s.picture()), f.size)),
             params: shown.map_or(Vec::new(), |(f, _)| f.params.clone()),
             figures: shown.map_or(Vec::new(), |(f, _)| figures(f)),
@@ -171,12 +171,12 @@ impl Site<'_> {
     }
 
     /// The command that makes a picture, for a shell in the folder above that of the scenes.
-    fn command(&self, path: &str, view: &[String]) -> String {
+    fn command(&self, path: &str, view: &[String]) -> Vec<String> {
         let file = format!("{}/{path}", self.folder_name());
         let view = view.iter().cloned();
         let allowed = self.allowed().into_iter().flat_map(|folder| ["--allow-read".to_string(), folder]);
         let words = ["rtdsl".to_string(), "render".into(), file].into_iter().chain(view).chain(allowed);
-        words.map(|w| quoted(&w)).collect::<Vec<_>>().join(" ")
+        words.map(|w| quoted(&w)).collect()
     }
 
     /// The folders that scenes may read besides, from the folder above that of the scenes.
