@@ -15,7 +15,8 @@ pub fn way(from: &Path, to: &Path) -> Option<PathBuf> {
     while let (Some(x), Some(y)) = (a.peek(), b.peek())
         && x == y
     {
-        (a.next(), b.next());
+        a.next();
+        b.next();
         shared += 1;
     }
     let ups = a.map(|_| Component::ParentDir);

@@ -12,8 +12,8 @@ pub struct Listing {
 }
 
 impl Listing {
-    /// Ready to list.
-    pub fn new() -> Listing {
+    /// With what the catalogue says of its words.
+    pub fn of_catalog() -> Listing {
         let topics = TOPICS.iter().flat_map(|t| t.names.iter().map(|n| (*n, (first_sentence(t.doc), false))));
         let words = catalog().iter().map(|w| (w.name, (w.doc, w.kind == Kind::ColorName)));
         Listing { words: topics.chain(words).collect() }
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn lines_and_classes() {
-        let html = Listing::new().html("sphere(r: 1)\r\n/* <a>\n */ #f80\n");
+        let html = Listing::of_catalog().html("sphere(r: 1)\r\n/* <a>\n */ #f80\n");
         assert_eq!(html.matches("class=\"l\"").count(), 3);
         for part in [
             "id=\"L3\"",
@@ -154,9 +154,9 @@ mod tests {
             assert!(html.contains(part), "{part} in {html}");
         }
         assert!(!html.contains('\r'));
-        assert_eq!(Listing::new().html("").matches("class=\"l\"").count(), 1);
-        assert!(!Listing::new().html("#f8").contains("<i"), "not a color");
-        assert!(Listing::new().html("tomato").contains("<i style=\"background:tomato\">"));
+        assert_eq!(Listing::of_catalog().html("").matches("class=\"l\"").count(), 1);
+        assert!(!Listing::of_catalog().html("#f8").contains("<i"), "not a color");
+        assert!(Listing::of_catalog().html("tomato").contains("<i style=\"background:tomato\">"));
     }
 
     #[test]

@@ -54,7 +54,7 @@ impl Site<'_> {
     /// A template doesn't fit what it shows.
     pub fn files(&self) -> Result<BTreeMap<String, Vec<u8>>, Stop> {
         let templates = Templates::new().map_err(broken)?;
-        let listing = Listing::new();
+        let listing = Listing::of_catalog();
         let texts = self.texts();
         let scenes: Vec<&Text> = texts.iter().filter(|t| t.is_scene).collect();
         let mut files = BTreeMap::new();

@@ -107,7 +107,7 @@ fn first(rest: &str, c: char) -> (Class, usize) {
 }
 
 /// Operators of several characters, the longest first.
-const SIGNS: [&str; 13] = ["..=", "|>", "..", "==", "!=", "<=", ">=", "=>", "+=", "-=", "*=", "/=", "//"];
+const SIGNS: [&str; 12] = ["..=", "|>", "..", "==", "!=", "<=", ">=", "=>", "+=", "-=", "*=", "/="];
 
 /// The most bytes of a number that are looked at in one go: the parser takes time for all it is given, so that a long line of
 /// sums would take the square of its length.
