@@ -38,7 +38,7 @@ function onPicture() {
   document.body.classList.toggle("shown", now !== null);
   if (!now) return;
   const { width, height, made, level } = now.info;
-  part("#stage").style.setProperty("--aspect", width / height);
+  document.documentElement.style.setProperty("--aspect", width / height);
   part("#canvas").setAttribute("aria-label", `The picture, ${width} by ${height} pixels, made at ${made}`);
   part("#canvas").dataset.picture = `${now.info.id} ${level}`;
   if (level === "final") offer(now);

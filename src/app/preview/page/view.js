@@ -39,7 +39,14 @@ export class View {
     this.#canvas = canvas;
     this.#context = canvas.getContext("2d");
     this.#onDraw = onDraw;
-    new ResizeObserver(([entry]) => this.#resize(entry)).observe(canvas);
+    const observer = new ResizeObserver(([entry]) => this.#resize(entry));
+    try {
+      // Also when the window goes to a screen of another density.
+      observer.observe(canvas, { box: "device-pixel-content-box" });
+    } catch {
+      // Safari doesn't know that box.
+      observer.observe(canvas);
+    }
   }
 
   /** Shows these entries (see pictures.js); each may be null. */
@@ -247,9 +254,13 @@ export class View {
 
   #resize(entry) {
     const exact = entry.devicePixelContentBoxSize?.[0];
-    const { width, height } = entry.contentRect;
-    this.#canvas.width = Math.max(exact?.inlineSize ?? Math.round(width * devicePixelRatio), 1);
-    this.#canvas.height = Math.max(exact?.blockSize ?? Math.round(height * devicePixelRatio), 1);
+    // Rounding may go either way, which only the browser knows. One that emulates another screen doesn't know either.
+    const side = (length, told) => {
+      const near = length * devicePixelRatio;
+      return Math.max(Math.abs(told - near) < 1 ? told : Math.round(near), 1);
+    };
+    this.#canvas.width = side(entry.contentRect.width, exact?.inlineSize);
+    this.#canvas.height = side(entry.contentRect.height, exact?.blockSize);
     if (this.fitted) this.fit();
     else this.#clamp();
     // Without waiting for a frame: a canvas of another size is empty.
