@@ -9,8 +9,8 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Saves of each kind.
-const ROUNDS: usize = 21;
+/// Saves of each kind; even, so that each leaves the scene as it was.
+const ROUNDS: usize = 20;
 
 /// What is changed, and how: every second save takes it back.
 const CHANGES: [(&str, &str, &str); 5] = [
@@ -27,9 +27,10 @@ struct Watch {
 }
 
 impl Watch {
-    fn start(folder: &Path) -> Watch {
+    fn start(folder: &Path, arguments: &[&str]) -> Watch {
         let mut child = Command::new(env!("CARGO_BIN_EXE_rtdsl"))
-            .args(["watch", "--json", "--serve", "-o", "watched.png", "cosc363.scene"])
+            .args(["watch", "--json", "--serve"])
+            .args(arguments)
             .current_dir(folder)
             .stdout(Stdio::piped())
             .spawn()
@@ -47,11 +48,11 @@ impl Watch {
         Watch { child, said }
     }
 
-    /// Everything said until the next finished picture.
-    fn until_picture(&self) -> Vec<Value> {
+    /// Everything said until the next event of this kind.
+    fn until(&self, event: &str) -> Vec<Value> {
         let mut all = Vec::new();
-        while all.last().is_none_or(|v: &Value| v["event"] != "picture") {
-            all.push(self.said.recv_timeout(Duration::from_secs(60)).expect("a picture comes"));
+        while all.last().is_none_or(|v: &Value| v["event"] != event) {
+            all.push(self.said.recv_timeout(Duration::from_secs(60)).expect("it comes"));
         }
         all
     }
@@ -66,15 +67,51 @@ impl Drop for Watch {
 
 fn main() {
     let folder = tempfile::tempdir().expect("a folder");
-    let folder = folder.path();
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    std::fs::create_dir(folder.join("assets")).expect("made");
-    std::fs::copy(examples.join("assets/earth.png"), folder.join("assets/earth.png")).expect("copied");
-    let text = std::fs::read_to_string(examples.join("cosc363.scene")).expect("read");
+    copy(&examples, folder.path());
+    saves(folder.path());
+    cancels(folder.path());
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("made");
+    for entry in std::fs::read_dir(from).expect("a folder").flatten() {
+        let target = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => drop(std::fs::copy(entry.path(), target).expect("copied")),
+        }
+    }
+}
+
+/// From a save while a picture is being made to the moment when all threads have let go of it.
+fn cancels(folder: &Path) {
+    println!("\nms from the news of a save to the end of the work on the picture before; {ROUNDS} saves each");
+    println!("{:<10} {:>8} {:>8}", "scene", "median", "longest");
+    for name in ["cosc363", "glass", "shell", "forest", "sea", "patterns"] {
+        let file = format!("{name}.scene");
+        let scene = folder.join(&file);
+        let text = std::fs::read_to_string(&scene).expect("read");
+        // Fine enough that no picture is finished in time.
+        let watch = Watch::start(folder, &["--aa", "grid:32", &file]);
+        watch.until("coarse");
+        let mut after = Vec::new();
+        for round in 0..ROUNDS {
+            std::thread::sleep(Duration::from_millis(100 + 37 * round as u64 % 300));
+            std::fs::write(&scene, format!("{text}// {round}\n")).expect("written");
+            let last = watch.until("cancelled").pop().expect("it came");
+            after.push(last["after"].as_f64().expect("seconds") * 1e3);
+        }
+        println!("{name:<10} {:>8.2} {:>8.2}", median(&mut after), after.last().expect("several"));
+    }
+}
+
+/// From a save to the pictures.
+fn saves(folder: &Path) {
     let scene = folder.join("cosc363.scene");
-    std::fs::write(&scene, &text).expect("written");
-    let watch = Watch::start(folder);
-    watch.until_picture();
+    let text = std::fs::read_to_string(&scene).expect("read");
+    let watch = Watch::start(folder, &["-o", "watched.png", "cosc363.scene"]);
+    watch.until("picture");
 
     println!(
         "cosc363.scene, 1280x720; medians of {ROUNDS} saves in ms, from before the save; in turn with bare renders"
@@ -91,7 +128,7 @@ fn main() {
             std::thread::sleep(Duration::from_millis(50));
             let start = SystemTime::now().duration_since(UNIX_EPOCH).expect("after 1970").as_secs_f64();
             std::fs::write(&scene, changed).expect("written");
-            for event in watch.until_picture() {
+            for event in watch.until("picture") {
                 let after = (event["time"].as_f64().expect("a time") - start) * 1e3;
                 match event["event"].as_str() {
                     Some("coarse") => coarse.push(after),

@@ -18,6 +18,10 @@
 //! 3. [`render::render`] traces batches of rays, tile by tile, into a [`film::Film`] of linear colours. It can't fail.
 //! 4. [`film::encode`] makes a picture file of it; [`film::OutputFile`] writes the file whole or not at all.
 //!
+//! Watching goes the same way again and again, and keeps what stays true: [`lang::Memory`] parsed files and decoded pictures,
+//! [`render::Retracer`] the tree over unchanged shapes and every tile that a change can't have moved. Both give, bit for bit,
+//! what starting anew gives.
+//!
 //! Every node, material and camera carries the [`diag::Place`] of the text that made it, so that even a late message and
 //! `rtdsl explain` point at a line.
 //!
@@ -34,7 +38,7 @@
 //! | 1 | [`film`] | linear picture, display codes, file formats, atomic files; may use `scene`'s colours |
 //! | 2 | [`lang`] | grammar, evaluation, vocabulary: text to scene |
 //! | 2 | [`render`] | world, rays, shapes, materials, integrator, tiles: scene to film |
-//! | 3 | [`app`] | one file a command: arguments, exit codes, everything that prints |
+//! | 3 | [`app`] | one file or folder a command: arguments, exit codes, everything that prints, watches or serves |
 //!
 //! # Rules that hold everywhere
 //!

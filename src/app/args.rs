@@ -146,9 +146,12 @@ pub struct GalleryArgs {
     /// Folder for pictures and pages. [default: `gallery`, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub out: Option<PathBuf>,
-    /// Make nothing: render, compare with the pictures in OUT, and end with 4 where one differs.
+    /// Make nothing in OUT: render, compare with the pictures there, and end with 4 where one differs.
     #[arg(long)]
     pub check: bool,
+    /// Folder for pictures that show what `--check` found: what was, what is, and the difference.
+    #[arg(long, value_name = "DIR", default_value = "rtdsl-differences", requires = "check")]
+    pub differences: PathBuf,
     /// Only scenes whose path in DIR this pattern matches, as in `chess*`.
     #[arg(long, value_name = "GLOB", value_parser = glob_pattern)]
     pub only: Option<glob::Pattern>,

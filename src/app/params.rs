@@ -84,7 +84,7 @@ fn kind_word(kind: &ParamKind) -> &'static str {
 }
 
 /// What a value may be, in words.
-fn allowed(kind: &ParamKind) -> String {
+pub fn allowed(kind: &ParamKind) -> String {
     match kind {
         ParamKind::Number { range, whole, unit } => {
             let number = if *whole { "whole number" } else { "number" };

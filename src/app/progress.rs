@@ -15,6 +15,16 @@ impl Bar {
         let style = ProgressStyle::with_template("{bar:40.cyan} {percent:>3} %  {elapsed} passed, {eta} left");
         Bar(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
     }
+
+    /// Adds `pixels` pixels to those that are to be made.
+    pub fn lengthen(&self, pixels: u64) {
+        self.0.inc_length(pixels);
+    }
+
+    /// Prints something else without the bar in its way.
+    pub fn pause(&self, print: impl FnOnce()) {
+        self.0.suspend(print);
+    }
 }
 
 impl Progress for Bar {

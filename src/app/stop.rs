@@ -1,6 +1,6 @@
 //! How a command ends: its exit code, and the message when it couldn't do what it was asked.
 
-use crate::diag::{self, Diagnostic, Diagnostics, Look, Sources};
+use crate::diag::{self, Diagnostic, Diagnostics, Look, Report, Sources};
 use crate::lang::Failure;
 use std::io::{self, Write};
 
@@ -56,6 +56,16 @@ impl Stop {
     /// The texts that they refer to.
     pub fn sources(&self) -> &Sources {
         &self.sources
+    }
+
+    /// The messages as plain text.
+    pub fn text(&self) -> String {
+        diag::print(&self.diagnostics, &self.sources, Look::Plain)
+    }
+
+    /// The messages as data.
+    pub fn reports(&self) -> Vec<Report> {
+        self.diagnostics.iter().map(|d| Report::new(d, &self.sources)).collect()
     }
 
     /// Prints the message to standard error.

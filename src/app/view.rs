@@ -63,11 +63,7 @@ pub fn checked_crop(crop: Option<Crop>, options: &Options) -> Result<Option<Crop
 
 /// The settings on one line, as a picture's recipe has them.
 pub fn settings_line(options: &Options, camera: &Camera) -> String {
-    let mut line = format!("size={}x{} aa=", options.width, options.height);
-    line += &match options.aa {
-        AntiAliasing::Off => "off".to_string(),
-        AntiAliasing::Grid(n) => format!("grid:{n}"),
-    };
+    let mut line = format!("size={}x{} aa={}", options.width, options.height, aa_word(options.aa));
     line += &format!(" max-depth={} precision={}", options.max_depth, precision_word(options.precision));
     if let Some(name) = &camera.name {
         line += &format!(" camera={name}");
@@ -76,6 +72,14 @@ pub fn settings_line(options: &Options, camera: &Camera) -> String {
         line += &format!(" crop={},{},{},{}", c.x, c.y, c.width, c.height);
     }
     line
+}
+
+/// `off` or `grid:N`.
+pub fn aa_word(aa: AntiAliasing) -> String {
+    match aa {
+        AntiAliasing::Off => "off".to_string(),
+        AntiAliasing::Grid(n) => format!("grid:{n}"),
+    }
 }
 
 /// `f64` or `f32`.

@@ -16,6 +16,7 @@ mod eval;
 mod expected;
 mod fault;
 mod finish;
+pub mod highlight;
 mod limits;
 mod load;
 mod machine;
@@ -39,6 +40,7 @@ mod ty;
 mod value;
 pub mod word;
 
+pub use highlight::{Token, TokenClass, highlight};
 pub use memory::Memory;
 pub use reference::{chapter, chapter_topics, chapters, help, topics};
 pub use request::{Dependency, Evaluated, Failure, Input, Param, ParamKind, Request};

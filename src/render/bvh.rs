@@ -10,18 +10,24 @@ use crate::math::{Mask, Real};
 /// The tree.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
-    nodes: Vec<BvhNode>,
+    pub(super) nodes: Vec<BvhNode>,
     /// Primitives in the order of the leaves, with their boxes.
-    leaves: Vec<(u32, Bounds)>,
+    pub(super) leaves: Vec<(u32, Bounds)>,
+    /// Primitives that were taken out or grafted on since it was built.
+    pub(super) changed: usize,
+    /// How often something was grafted on.
+    pub(super) grafts: usize,
 }
 
+/// A node of the tree.
 #[derive(Clone, Copy, Debug)]
-struct BvhNode {
-    bounds: Bounds,
+pub(super) struct BvhNode {
+    /// Around all below.
+    pub(super) bounds: Bounds,
     /// Of a leaf: its first entry in `leaves`. Of an inner node: its second child; the first one follows directly.
-    first: u32,
+    pub(super) first: u32,
     /// Entries of a leaf; 0 for an inner node.
-    count: u32,
+    pub(super) count: u32,
 }
 
 /// Bins a split is chosen from: more change the tree little (Wald 2007, section 3).
@@ -30,8 +36,8 @@ const BINS: usize = 16;
 const LEAF: usize = 4;
 /// Depth after which a range is halved by count, whatever the heuristic says: bounds the depth by this plus log₂ n ≤ 32.
 const FREE_DEPTH: u32 = 48;
-/// Room for every node that can wait during a traversal.
-const STACK: usize = (FREE_DEPTH + 33) as usize;
+/// Room for every node that can wait during a traversal: the depth of a tree, and of what is grafted on it.
+const STACK: usize = (FREE_DEPTH + 33) as usize + super::graft::MOST_GRAFTS;
 
 impl Bvh {
     /// Builds the tree over (primitive, box) pairs.
@@ -40,7 +46,7 @@ impl Bvh {
         if !leaves.is_empty() {
             subdivide(&mut nodes, &mut leaves, 0, 0, &mut Vec::new());
         }
-        Bvh { nodes, leaves }
+        Bvh { nodes, leaves, ..Bvh::default() }
     }
 
     /// Primitives and their boxes, in the order of the leaves.

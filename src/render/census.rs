@@ -16,6 +16,21 @@ pub struct PrimitiveKey {
     pub transmit: u64,
 }
 
+/// The new number of every old primitive whose shape and place are still there, whatever its look; `u32::MAX` for others.
+/// Both lists are sorted, as worlds number their primitives.
+pub fn same_geometry(before: &[PrimitiveKey], after: &[PrimitiveKey]) -> Vec<u32> {
+    let mut k = 0;
+    let new_number = |old: &PrimitiveKey| {
+        while after.get(k).is_some_and(|new| new.geometry < old.geometry) {
+            k += 1;
+        }
+        let is_there = after.get(k).is_some_and(|new| new.geometry == old.geometry);
+        k += is_there as usize; // the next twin has its own
+        if is_there { k as u32 - 1 } else { u32::MAX }
+    };
+    before.iter().map(new_number).collect()
+}
+
 /// How a world differs from the one before it.
 pub struct Change {
     /// The new number of every old primitive that is still there, if only painted anew; `u32::MAX` for the others.

@@ -17,6 +17,7 @@ mod dispatch;
 mod feature;
 mod footprint;
 pub mod frame;
+mod graft;
 mod light;
 pub mod material;
 mod optics;

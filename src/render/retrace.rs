@@ -21,12 +21,6 @@ pub struct Built {
 }
 
 impl Built {
-    /// Prepares `scene` as seen by `camera`; `None` where `cancel` was set meanwhile.
-    pub fn new(scene: &Scene, camera: &Camera, cancel: &AtomicBool) -> Option<Built> {
-        let (world, keys) = World::build_keyed(scene, camera, cancel)?;
-        Some(Built { world: Arc::new(world), keys })
-    }
-
     /// The world.
     pub fn world(&self) -> &Arc<World> {
         &self.world
@@ -89,6 +83,14 @@ impl Plan {
 }
 
 impl Retracer {
+    /// Prepares `scene` as seen by `camera`; `None` where `cancel` was set meanwhile. What is as it was in the last picture
+    /// keeps its tree.
+    pub fn build(&self, scene: &Scene, camera: &Camera, cancel: &AtomicBool) -> Option<Built> {
+        let before = self.before.as_ref().map(|b| (&*b.built.world, &b.built.keys[..]));
+        let (world, keys) = World::build_keyed(scene, camera, before, cancel)?;
+        Some(Built { world: Arc::new(world), keys })
+    }
+
     /// Finds out what has to be traced for the picture of `built`.
     pub fn plan(&self, built: &Built, options: &Options) -> Plan {
         let tiles = tiles_of(options);

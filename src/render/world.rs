@@ -6,7 +6,7 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
-use super::census::PrimitiveKey;
+use super::census::{PrimitiveKey, same_geometry};
 use super::digest::{content_key, material_digests};
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
@@ -95,17 +95,18 @@ struct Made {
 impl World {
     /// Prepares `scene` as seen by `camera`.
     pub fn build(scene: &Scene, camera: &Camera) -> World {
-        match World::build_keyed(scene, camera, &AtomicBool::new(false)) {
+        match World::build_keyed(scene, camera, None, &AtomicBool::new(false)) {
             Some((world, _)) => world,
             None => unreachable!("nothing cancels it"),
         }
     }
 
     /// Prepares `scene` as seen by `camera`, and says what each primitive is known by; `None` where `cancel` was set
-    /// meanwhile.
+    /// meanwhile. The tree of the world `before`, with its keys, goes on living where little changed.
     pub(super) fn build_keyed(
         scene: &Scene,
         camera: &Camera,
+        before: Option<(&World, &[PrimitiveKey])>,
         cancel: &AtomicBool,
     ) -> Option<(World, Vec<PrimitiveKey>)> {
         let go_on = || if cancel.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
@@ -165,7 +166,7 @@ impl World {
             }
         }
         entries.sort_by_cached_key(|e| e.key); // entries are large: each is moved but once or twice
-        let keys = entries.iter().map(|e| e.key).collect();
+        let keys: Vec<PrimitiveKey> = entries.iter().map(|e| e.key).collect();
         let mut bounded = Vec::with_capacity(entries.len());
         for entry in entries {
             world.add(entry, &numbers, &mut bounded);
@@ -173,7 +174,9 @@ impl World {
                 return None;
             }
         }
-        world.bvh = Bvh::build(bounded);
+        // Boxes are relative to the camera's place.
+        let before = before.filter(|(old, _)| old.eye == world.eye);
+        world.bvh = before.and_then(|b| grafted(b, &keys, &bounded)).unwrap_or_else(|| Bvh::build(bounded));
         world.find_touched_surfaces();
         Some((world, keys))
     }
@@ -308,6 +311,18 @@ impl World {
             Slot::Pattern(_) => None,
         }
     }
+}
+
+/// The old world's tree, with what became of its primitives.
+fn grafted(
+    (old, old_keys): (&World, &[PrimitiveKey]),
+    keys: &[PrimitiveKey],
+    bounded: &[(u32, Bounds)],
+) -> Option<Bvh> {
+    let renumbered = same_geometry(old_keys, keys);
+    let mut is_new = vec![true; keys.len()];
+    renumbered.iter().filter(|&&id| id != u32::MAX).for_each(|&id| is_new[id as usize] = false);
+    old.bvh.grafted(&renumbered, bounded.iter().filter(|b| is_new[b.0 as usize]).copied().collect())
 }
 
 /// Centre and half height of a shape in the space in which it is made; a plane's point and ½.

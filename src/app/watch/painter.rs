@@ -201,7 +201,7 @@ impl<'w> Painter<'w> {
     /// Makes the picture; `Err(None)` where it was told to stop.
     fn draw(&mut self, s: &Sketch, leash: &Leash) -> Result<(), Option<Stop>> {
         let world_start = Instant::now();
-        let built = Built::new(&s.evaluated.scene, &s.camera, leash.cancel()).ok_or(None)?;
+        let built = self.retracer.build(&s.evaluated.scene, &s.camera, leash.cancel()).ok_or(None)?;
         fits(built.world(), &s.evaluated, &s.options)?;
         let world = Arc::clone(built.world());
         let plan = self.retracer.plan(&built, &s.options);

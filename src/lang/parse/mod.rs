@@ -76,6 +76,12 @@ pub fn parse_expression(file: FileId, text: &str) -> Result<Expr, Diagnostic> {
     Builder { file, offset: piece.range.start, holes: &[] }.expr(pair)
 }
 
+/// How many bytes at the start of `text` are one `rule`; `None` if it starts with something else. Takes time in proportion
+/// to all of `text`.
+pub fn length_of(rule: Rule, text: &str) -> Option<usize> {
+    Grammar::parse(rule, text).ok().map(|pairs| pairs.as_str().len())
+}
+
 fn check_edition(source: &str, span: Span, first: bool) -> Option<Diagnostic> {
     let rest = source.trim_start_matches("rtdsl").trim();
     if !first {

@@ -15,6 +15,10 @@ pub struct Prepared {
     pub text: String,
     /// The outermost statements, blanks around them left out; empty ones are dropped.
     pub statements: Vec<Piece>,
+    /// Comments, in the order of the text.
+    pub comments: Vec<Range<usize>>,
+    /// What stands within quotes, quotes included; the `{…}` in it parts it.
+    pub texts: Vec<Range<usize>>,
 }
 
 /// An outermost statement.
@@ -41,10 +45,12 @@ pub fn prepare(file: FileId, text: &str) -> (Prepared, Diagnostics) {
         pieces: Vec::new(),
         errors: Vec::new(),
         next_word: 0..0,
+        comments: Vec::new(),
+        texts: Vec::new(),
     };
     s.run();
     let text = String::from_utf8(s.out).unwrap_or_default();
-    (Prepared { text, statements: s.pieces }, s.errors)
+    (Prepared { text, statements: s.pieces, comments: s.comments, texts: s.texts }, s.errors)
 }
 
 struct Open {
@@ -67,6 +73,8 @@ struct Scanner<'a> {
     errors: Diagnostics,
     /// Where the next line with any text starts; everything up to it is blanks and comments.
     next_word: Range<usize>,
+    comments: Vec<Range<usize>>,
+    texts: Vec<Range<usize>>,
 }
 
 const OPENING_WORDS: [&str; 7] = ["let", "var", "fn", "param", "import", "export", "while"];
@@ -74,12 +82,18 @@ const OPENING_WORDS: [&str; 7] = ["let", "var", "fn", "param", "import", "export
 impl Scanner<'_> {
     fn run(&mut self) {
         while self.i < self.bytes.len() {
-            let inside_text = self.open.last().is_some_and(|o| o.mark == b'"');
-            let c = self.bytes[self.i];
+            let (at, c) = (self.i, self.bytes[self.i]);
+            let inside_text = self.inside_text();
             if inside_text {
                 self.text_byte(c);
             } else {
                 self.code_byte(c);
+            }
+            match (inside_text, self.inside_text()) {
+                // At its quote, or after the `}` of a value in it.
+                (false, true) => self.texts.push(at + usize::from(c != b'"')..self.bytes.len()),
+                (true, false) => self.end_text(at + usize::from(c == b'"')),
+                _ => {}
             }
             if self.open.len() > BRACKET_DEPTH || self.arrows > ARROW_DEPTH {
                 self.too_deep();
@@ -88,6 +102,16 @@ impl Scanner<'_> {
         }
         self.close_at_end();
         self.end_statement(self.bytes.len());
+    }
+
+    fn inside_text(&self) -> bool {
+        self.open.last().is_some_and(|o| o.mark == b'"')
+    }
+
+    fn end_text(&mut self, end: usize) {
+        if let Some(text) = self.texts.last_mut() {
+            text.end = end;
+        }
     }
 
     fn text_byte(&mut self, c: u8) {
@@ -110,8 +134,7 @@ impl Scanner<'_> {
             b'/' if next == Some(b'/') => {
                 let end =
                     self.bytes[self.i..].iter().position(|b| *b == b'\n').map_or(self.bytes.len(), |n| self.i + n);
-                self.blank(self.i, end);
-                self.i = end;
+                self.comment(end);
                 return;
             }
             b'/' if next == Some(b'*') => return self.block_comment(),
@@ -222,8 +245,13 @@ impl Scanner<'_> {
                     .note("comments nest: every `/*` needs its own `*/`"),
             );
         }
-        let end = end.unwrap_or(self.bytes.len());
-        self.blank(self.i, end);
+        self.comment(end.unwrap_or(self.bytes.len()));
+    }
+
+    /// Blanks the comment that ends before `end`.
+    fn comment(&mut self, end: usize) {
+        self.out[self.i..end].fill(b' ');
+        self.comments.push(self.i..end);
         self.i = end;
     }
 
@@ -235,10 +263,6 @@ impl Scanner<'_> {
             self.pieces.push(Piece { range: self.start + from..self.start + to, broken: self.broken });
         }
         self.broken = false;
-    }
-
-    fn blank(&mut self, from: usize, to: usize) {
-        self.out[from..to].fill(b' ');
     }
 
     fn span(&self, from: usize, to: usize) -> Span {

@@ -30,25 +30,33 @@ export class Controls {
       part(this.#root, "#set-fault").hidden = true;
     }
     this.#posted = posted;
-    const list = part(this.#root, "#params-list");
-    const old = this.#all;
-    this.#all = new Map();
-    for (const [i, setting] of posted.params.entries()) {
-      const form = JSON.stringify({ ...setting, value: 0, number: 0, color: 0 });
-      let control = old.get(setting.name);
-      if (control?.form !== form) {
-        control = new Control(setting, form, (text) => this.#sender.send({ [setting.name]: text }), () => this.show(this.#posted));
-      }
-      this.#all.set(setting.name, control);
-      // Moved only where needed: an element that moves loses the focus.
-      if (list.children[i] !== control.element) list.insertBefore(control.element, list.children[i] ?? null);
-      control.update(setting, this.#settled());
-    }
-    while (list.children.length > posted.params.length) list.lastElementChild.remove();
+    this.#arrange(posted.params);
+    posted.params.forEach((setting) => this.#all.get(setting.name).update(setting, this.#settled()));
     this.#root.hidden = posted.params.length === 0;
     part(this.#root, "#set-line").textContent = posted.set_line;
     part(this.#root, "#set-copy").disabled = posted.set_line === "";
     part(this.#root, "#reset-all").disabled = ![...this.#all.values()].some((c) => c.isChanged);
+  }
+
+  /** Makes controls for these settings, and takes away what is no longer there. */
+  #arrange(settings) {
+    const list = part(this.#root, "#params-list");
+    const old = this.#all;
+    this.#all = new Map(settings.map((setting) => {
+      const control = old.get(setting.name);
+      return [setting.name, control?.form === formOf(setting) ? control : this.#make(setting)];
+    }));
+    old.forEach((control, name) => this.#all.get(name) === control || control.element.remove());
+    // Moved only where needed: an element that moves loses the focus.
+    [...this.#all.values()].forEach(({ element }, i) => {
+      if (list.children[i] !== element) list.insertBefore(element, list.children[i] ?? null);
+    });
+  }
+
+  #make(setting) {
+    const send = (text) => this.#sender.send({ [setting.name]: text });
+    // Not at once: a field that is left because it is taken away is no cause to begin anew.
+    return new Control(setting, send, () => setTimeout(() => this.show(this.#posted)));
   }
 
   /** Whether what is posted is the answer to all that was sent. */
@@ -88,8 +96,8 @@ class Control {
   #sent = null;
   #held = false;
 
-  constructor(setting, form, send, onReleased) {
-    this.form = form;
+  constructor(setting, send, onReleased) {
+    this.form = formOf(setting);
     this.#setting = setting;
     const id = `param-${setting.name}`;
     const head = make("div", "param-head");
@@ -97,7 +105,6 @@ class Control {
     label.htmlFor = id;
     label.id = `${id}-name`;
     this.#reset.type = "button";
-    this.#reset.title = `Back to ${setting.default}`;
     this.#reset.setAttribute("aria-label", `Reset ${setting.name}`);
     this.#reset.addEventListener("click", () => {
       this.release();
@@ -166,7 +173,13 @@ class Control {
 
   #mark() {
     this.#reset.classList.toggle("changed", this.isChanged);
+    this.#reset.title = `Back to ${this.#setting.default}`;
   }
+}
+
+/** What a control is made for: all of a setting but its values. */
+function formOf({ name, description, kind, range, whole, unit, choices }) {
+  return JSON.stringify([name, description, kind, range, whole, unit, choices]);
 }
 
 /**
@@ -179,26 +192,31 @@ const INPUTS = {
     const field = make("input");
     Object.assign(field, { id, type: "number", step: whole ? "1" : "any", inputMode: "decimal" });
     const slider = range && range[0] < range[1] ? make("input") : null;
+    const isNumber = () => !Number.isNaN(field.valueAsNumber) && field.checkValidity();
+    let last = "";
     if (range) [field.min, field.max] = range;
     if (slider) {
       Object.assign(slider, { type: "range", min: range[0], max: range[1], step: whole ? "1" : "any" });
       slider.setAttribute("aria-labelledby", `${id}-name`);
       slider.addEventListener("input", () => {
-        field.value = short(neat(slider.valueAsNumber, range, whole));
-        send(field.value + unit);
+        field.value = last = short(neat(slider.valueAsNumber, range, whole));
+        send(last + unit);
       });
     }
     field.addEventListener("input", () => {
-      if (Number.isNaN(field.valueAsNumber) || !field.checkValidity()) return;
-      if (slider) slider.value = field.value;
-      send(short(field.valueAsNumber) + unit);
+      if (!isNumber()) return;
+      last = short(field.valueAsNumber);
+      if (slider) slider.value = last;
+      send(last + unit);
     });
+    // What can't be the value doesn't stay as if it were.
+    field.addEventListener("blur", () => isNumber() || (field.value = last));
     const unitText = unit ? [make("span", "param-unit", unit === "deg" ? "°" : unit)] : [];
     return {
       elements: [...(slider ? [slider] : []), field, ...unitText],
       write({ number }) {
-        if (slider) slider.value = number;
-        field.value = short(number);
+        field.value = last = short(number);
+        if (slider) slider.value = last;
       },
       matches: ({ number }, sent) => number === parseFloat(sent),
       isTypedIn: () => document.activeElement === field,

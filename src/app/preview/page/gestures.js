@@ -12,8 +12,8 @@ const WHEEL = 0.0018;
 const PINCH = 0.01;
 
 /**
- * Lets `element` move `view`. `onPoint` is called with the pixel under the mouse (or null), `onTap` with one that was
- * clicked or tapped.
+ * Lets `element` move `view`. `onPoint` is called with the pixel under the mouse, `onTap` with one that was clicked or
+ * tapped; both with null beside the picture.
  */
 export function listen(element, view, onPoint, onTap) {
   /** Where each pressed pointer is. */
@@ -63,7 +63,6 @@ export function listen(element, view, onPoint, onTap) {
   };
   element.addEventListener("pointerup", release);
   element.addEventListener("pointercancel", release);
-  element.addEventListener("pointerleave", () => pressed.size || onPoint(null));
 
   element.addEventListener("wheel", (event) => {
     event.preventDefault();

@@ -8,7 +8,7 @@ export class Inspector {
   #root;
   #view;
   #pictures;
-  /** The pixel under the mouse, and the one that is held. */
+  /** The pixel that was under the mouse last, and the one that is held. */
   #pointed = null;
   #held = null;
   /** What the rows tell of: picture and pixel. */
@@ -23,10 +23,10 @@ export class Inspector {
     this.#pictures = pictures;
   }
 
-  /** The mouse is over `pixel`, or over none. */
+  /** The mouse is over `pixel`; what is told of the last one stays when it leaves. */
   point(pixel) {
-    this.#pointed = pixel;
-    if (!this.#held && pixel) this.refresh();
+    this.#pointed = pixel ?? this.#pointed;
+    if (!this.#held) this.refresh();
   }
 
   /** Holds a pixel that was tapped; a second tap, or one beside the picture, lets go. */
@@ -111,8 +111,9 @@ export class Inspector {
       return;
     }
     list.append(element("dd", "what", sight.what));
-    row("made at", [sight.made_at, ...sight.calls]);
-    row("material", sight.material);
+    // Place and text, parted by two spaces, on lines of their own.
+    row("made at", [...sight.made_at.split("  "), ...sight.calls]);
+    row("material", sight.material.split("  "));
     row("distance", sight.distance);
     row("lights", sight.lights.length ? sight.lights : "none in the scene");
     row("color there", sight.color);

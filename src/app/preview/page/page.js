@@ -38,7 +38,7 @@ function onPicture() {
   document.body.classList.toggle("shown", now !== null);
   if (!now) return;
   const { width, height, made, level } = now.info;
-  part("#stage").style.setProperty("--aspect", width / height);
+  document.documentElement.style.setProperty("--aspect", width / height);
   part("#canvas").setAttribute("aria-label", `The picture, ${width} by ${height} pixels, made at ${made}`);
   part("#canvas").dataset.picture = `${now.info.id} ${level}`;
   if (level === "final") offer(now);
@@ -62,7 +62,11 @@ function onDrawn() {
   wipe.place();
 }
 
-listen(part("#view"), view, (pixel) => inspector.point(pixel), (pixel) => inspector.tap(pixel));
+listen(part("#view"), view, (pixel) => inspector.point(pixel), (pixel) => {
+  inspector.tap(pixel);
+  // On a phone what is told of it stands at the top of what scrolls.
+  if (pixel) scrollTo({ top: 0 });
+});
 
 const doing = {
   "zoom-in": () => view.step(1),

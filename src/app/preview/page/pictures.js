@@ -53,23 +53,22 @@ export class Pictures {
         old.forEach((o) => this.#drop(o));
       });
     }
-    if (this.before && this.before.key !== this.#previousKey()) {
-      return async () => {
-        const old = this.before;
-        this.before = null;
-        this.#drop(old);
-        return true;
-      };
-    }
-    if (this.#wantBefore && previous && !this.before) {
-      return () => this.#load(run, previous, (entry) => (this.before = entry));
-    }
+    if ((this.before?.key ?? null) === this.#previousKey()) return null;
+    if (previous && this.#wantBefore) return () => this.#load(run, previous, (entry) => this.#compareWith(entry));
+    if (this.before) return () => this.#compareWith(null);
     return null;
   }
 
   #previousKey() {
     const { run, previous } = this.#posted;
     return previous ? key(run, previous) : null;
+  }
+
+  #compareWith(entry) {
+    const old = this.before;
+    this.before = entry;
+    this.#drop(old);
+    return true;
   }
 
   /** Frees what is shown nowhere. */
@@ -81,18 +80,19 @@ export class Pictures {
   }
 
   async #load(run, info, put) {
+    let blob, bitmap;
     try {
       const response = await fetch(`/picture/${info.id}.png?run=${encodeURIComponent(run)}`);
       if (!response.ok) return this.#isPast(run, info);
-      const blob = await response.blob();
-      const bitmap = await createImageBitmap(blob);
-      put({ key: key(run, info), info, bitmap, blob });
-      this.#onChange();
-      return true;
+      blob = await response.blob();
+      bitmap = await createImageBitmap(blob);
     } catch {
-      // The server is gone, and what it posts when it is back comes anew.
+      // The server is gone; what it posts when it is back comes anew.
       return this.#isPast(run, info);
     }
+    put({ key: key(run, info), info, bitmap, blob });
+    this.#onChange();
+    return true;
   }
 
   /** Whether something newer than `info` has been posted meanwhile: then that is worth a try. */

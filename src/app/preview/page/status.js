@@ -17,7 +17,8 @@ export class Status {
     document.body.classList.toggle("busy", posted.busy);
     document.body.classList.toggle("broken", errors.length > 0);
     part("#progress").value = posted.progress;
-    part("#file").textContent = posted.file;
+    part("#file").textContent = baseName(posted.file);
+    part("#file").title = posted.file;
     part("#state").textContent = state(posted, errors);
     document.title = `${errors.length ? "✗ " : ""}${baseName(posted.file)} – rtdsl`;
     this.#showErrors(errors);

@@ -7,9 +7,13 @@ const LARGEST = STEPS.at(-1);
 /** A picture that is fitted is smoothed up to here; beyond, its pixels are large enough to be seen as what they are. */
 const FITTED_SMOOTH = 4;
 
-/** Room around a picture that fits, and how far its edge may be panned inwards, in CSS pixels. */
+/** Room around a picture that fits, on a narrow window less; and how far its edge may be panned inwards. In CSS pixels. */
 const MARGIN = 14;
+const NARROW = { width: 500, margin: 5 };
 const OVERPAN = 60;
+
+/** A picture that would be enlarged by less is shown pixel for pixel: sharp is better than a little larger. */
+const WORTH_ENLARGING = 1.2;
 
 export class View {
   /** Zoom, in screen pixels for a pixel of the picture. */
@@ -35,7 +39,14 @@ export class View {
     this.#canvas = canvas;
     this.#context = canvas.getContext("2d");
     this.#onDraw = onDraw;
-    new ResizeObserver(([entry]) => this.#resize(entry)).observe(canvas);
+    const observer = new ResizeObserver(([entry]) => this.#resize(entry));
+    try {
+      // Also when the window goes to a screen of another density.
+      observer.observe(canvas, { box: "device-pixel-content-box" });
+    } catch {
+      // Safari doesn't know that box.
+      observer.observe(canvas);
+    }
   }
 
   /** Shows these entries (see pictures.js); each may be null. */
@@ -185,18 +196,19 @@ export class View {
     c.drawImage(bitmap, x * kx, y * ky, width * kx, height * ky, left + x * z, top + y * z, width * z, height * z);
   }
 
-  /** The marked pixel's outline, and a cross where a pixel is too small to be seen. Dark and light: seen on every colour. */
+  /** The marked pixel's outline, larger where a pixel is too small to be seen. Dark and light: seen on every colour. */
   #paintMark() {
     const c = this.#context;
     const { left, top } = this.#place();
     const least = 9 * this.#ratio();
     const side = Math.max(this.zoom, least);
-    const x = left + (this.mark.x + 0.5) * this.zoom - side / 2;
-    const y = top + (this.mark.y + 0.5) * this.zoom - side / 2;
+    // Lines lie in the middle of the screen's pixels: between two they are blurred.
+    const x = Math.round(left + (this.mark.x + 0.5) * this.zoom - side / 2) - 0.5;
+    const y = Math.round(top + (this.mark.y + 0.5) * this.zoom - side / 2) - 0.5;
     for (const [color, line] of [["#000", 3], ["#fff", 1]]) {
       c.strokeStyle = color;
       c.lineWidth = line * this.#ratio();
-      c.strokeRect(x, y, side, side);
+      c.strokeRect(x, y, Math.round(side) + 1, Math.round(side) + 1);
     }
   }
 
@@ -215,10 +227,13 @@ export class View {
   }
 
   #fitZoom() {
-    const room = (side) => Math.max(side - 2 * MARGIN * this.#ratio(), 1);
     const { width, height } = this.#size;
-    if (!width || !height || !this.#canvas.width) return 1;
-    return Math.min(room(this.#canvas.width) / width, room(this.#canvas.height) / height, LARGEST);
+    if (!width || !height) return 1;
+    const { width: w, height: h, clientWidth } = this.#canvas;
+    const margin = clientWidth < NARROW.width ? NARROW.margin : MARGIN;
+    const room = (side) => Math.max(side - 2 * margin * this.#ratio(), 1);
+    const zoom = Math.min(room(w) / width, room(h) / height, LARGEST);
+    return zoom < WORTH_ENLARGING && width <= w && height <= h ? 1 : zoom;
   }
 
   /** Keeps the picture in sight; what is smaller than the window stays in its middle. */
@@ -239,9 +254,13 @@ export class View {
 
   #resize(entry) {
     const exact = entry.devicePixelContentBoxSize?.[0];
-    const { width, height } = entry.contentRect;
-    this.#canvas.width = Math.max(exact?.inlineSize ?? Math.round(width * devicePixelRatio), 1);
-    this.#canvas.height = Math.max(exact?.blockSize ?? Math.round(height * devicePixelRatio), 1);
+    // Rounding may go either way, which only the browser knows. One that emulates another screen doesn't know either.
+    const side = (length, told) => {
+      const near = length * devicePixelRatio;
+      return Math.max(Math.abs(told - near) < 1 ? told : Math.round(near), 1);
+    };
+    this.#canvas.width = side(entry.contentRect.width, exact?.inlineSize);
+    this.#canvas.height = side(entry.contentRect.height, exact?.blockSize);
     if (this.fitted) this.fit();
     else this.#clamp();
     // Without waiting for a frame: a canvas of another size is empty.
