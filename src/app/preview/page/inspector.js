@@ -116,7 +116,7 @@ export class Inspector {
     row("material", sight.material.split("  "));
     row("distance", sight.distance);
     row("lights", sight.lights.length ? sight.lights : "none in the scene");
-    row("color there", sight.color);
+    row("color", sight.color);
     row("point", sight.point);
     row("normal", sight.normal);
   }
@@ -129,6 +129,7 @@ export class Inspector {
 function element(tag, className, text) {
   const made = document.createElement(tag);
   made.className = className;
-  made.textContent = text;
+  // A long path breaks at its folders, not within a line's number.
+  text.split(/(?<=\/)/).forEach((piece, i) => made.append(...(i ? [document.createElement("wbr")] : []), piece));
   return made;
 }
