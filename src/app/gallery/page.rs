@@ -8,8 +8,10 @@ use serde::Serialize;
 /// The page of a text.
 #[derive(Default, Serialize)]
 pub struct ScenePage {
-    /// What it is called.
+    /// What it is called, as plain text.
     pub title: String,
+    /// The same as HTML.
+    pub heading: String,
     /// Its path in the folder of the scenes.
     pub name: String,
     /// As HTML.
@@ -93,8 +95,10 @@ pub struct IndexPage {
 /// A scene on the index.
 #[derive(Serialize)]
 pub struct Card {
-    /// What it is called.
+    /// What it is called, as plain text.
     pub title: String,
+    /// The same as HTML.
+    pub heading: String,
     /// Its path in the folder of the scenes.
     pub name: String,
     /// As HTML.

@@ -121,7 +121,8 @@ impl Site<'_> {
         let imports = |e: &Entry| e.files.iter().skip(1).any(|f| f.path == text.path);
         let users = texts.iter().filter(|t| self.entries.get(&t.path).is_some_and(imports));
         ScenePage {
-            title: shown_title(text),
+            title: shown_title(text).replace('`', ""),
+            heading: prose(&shown_title(text)),
             name: text.path.clone(),
             description: prose(&text.title.description),
             root: "../".repeat(text.page.matches('/').count()),
@@ -148,7 +149,8 @@ impl Site<'_> {
             None => Picture::new(href(&s.picture()), f.size),
         });
         Card {
-            title: shown_title(text),
+            title: shown_title(text).replace('`', ""),
+            heading: prose(&shown_title(text)),
             name: text.path.clone(),
             description: prose(&text.title.description),
             page: href(&text.page),
@@ -197,7 +199,7 @@ impl Site<'_> {
 fn link_to(from: &Text, to: &Text) -> PageLink {
     let name = to.path.rsplit('/').next().unwrap_or("").trim_end_matches(".scene");
     let name = if to.is_scene { name.to_string() } else { to.path.clone() };
-    PageLink { page: between(&from.page, &to.page), name, title: to.title.title.clone() }
+    PageLink { page: between(&from.page, &to.page), name, title: to.title.title.replace('`', "") }
 }
 
 /// A text without a title is called by its path.
