@@ -202,7 +202,8 @@ mod tests {
         for i in 0..3000 {
             let beam = |k: u64| {
                 let axis = unit(i, k);
-                let cos = 1.0 - (0.5 + 0.5 * random(i, k + 3)).powi(4) * 2.0;
+                let spread = 0.5 + 0.5 * random(i, k + 3);
+                let cos = 1.0 - 2.0 * (spread * spread) * (spread * spread);
                 Beam { origins: Bounds::around(unit(i, k + 4), [0.1; 3]), axis, cos }
             };
             let (a, b) = (beam(0), beam(100));
