@@ -41,6 +41,10 @@ fn collect(name: String, path: &Path, into: &mut Vec<(String, PathBuf)>) {
     match fs::read_dir(path) {
         Ok(entries) => {
             for entry in entries.flatten() {
+                // Tests decide nothing.
+                if entry.path().file_stem().is_some_and(|stem| stem == "tests") {
+                    continue;
+                }
                 let below = format!("{name}/{}", entry.file_name().to_string_lossy());
                 collect(below, &entry.path(), into);
             }

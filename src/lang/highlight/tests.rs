@@ -1,3 +1,5 @@
+//! Tokens of every class, of the examples, and of texts that are damaged.
+
 use super::*;
 use crate::lang::parse::parse;
 use std::sync::atomic::AtomicBool;
