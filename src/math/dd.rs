@@ -82,8 +82,7 @@ impl Mul for Dd {
 impl Div for Dd {
     type Output = Dd;
     fn div(self, o: Dd) -> Dd {
-        // Of zeros, the sign that the steps give.
-        if self.hi == 0.0 { Dd::new(self.hi / o.hi + 0.0 / o.hi) } else { quotient(self, o) }
+        if self.hi == 0.0 { Dd::default() } else { quotient(self, o) }
     }
 }
 
