@@ -156,7 +156,7 @@ impl<'w> Painter<'w> {
                 main: Input::File(self.args.scene.file.clone()),
                 set: set.to_vec(),
                 allow_read: self.args.scene.allow_read.clone(),
-                record_arguments: false,
+                record_arguments: self.show.is_on(), // pages ask what a pixel sees
             };
             lang::evaluate_again(&request, &mut self.memory, leash.cancel())
         };

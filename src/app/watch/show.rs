@@ -32,6 +32,9 @@ pub enum Coarse {
 /// Pixels of a coarse picture's side stand for so many of the full one's: it costs a sixteenth.
 const COARSE: u32 = 4;
 
+/// Up to one tile in so many is few: they take about twice as long as a coarse picture.
+const FEW: usize = 8;
+
 /// Side of the grid of rays from which on a full-size picture of one ray a pixel comes second: it costs a sixteenth at most.
 const FINE_GRID: u32 = 4;
 
@@ -73,8 +76,8 @@ impl<'w> Show<'w> {
 
     /// Shows a coarse picture, where that is sooner than the final one.
     pub fn coarse(&self, world: &World, text: u64, options: &Options, plan: &Plan, leash: &Leash) -> Coarse {
-        // Where few tiles are traced anew, the picture before with those in it is soon there.
-        if !self.is_on() || plan.traced() * 3 < plan.tiles() {
+        // Where few tiles are traced anew, the picture before with those in it is there as soon.
+        if !self.is_on() || plan.traced() * FEW < plan.tiles() {
             return Coarse::NotNeeded;
         }
         let (width, height) = (options.width, options.height);

@@ -17,7 +17,7 @@ const MOST_STEPS: usize = 400;
 pub struct Trail {
     /// Real paths: no links in them. Where a path ends early, the last is the nearest folder that exists.
     pub folders: BTreeSet<PathBuf>,
-    /// Names that matter in them, as [`fold`] leaves them.
+    /// Names that matter in them, as `fold` leaves them.
     pub names: HashSet<String>,
     /// Where each path leads that was walked.
     ends: HashMap<PathBuf, Option<PathBuf>>,
