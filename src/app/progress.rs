@@ -25,6 +25,11 @@ impl Bar {
     pub fn pause(&self, print: impl FnOnce()) {
         self.0.suspend(print);
     }
+
+    /// Takes it off the terminal.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
+    }
 }
 
 impl Progress for Bar {
@@ -35,6 +40,6 @@ impl Progress for Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.clear();
     }
 }

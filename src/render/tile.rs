@@ -55,6 +55,9 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         self.sums[..n].fill([0.0; 3]);
         for sy in 0..self.side {
             for sx in 0..self.side {
+                if self.tracer.is_cancelled() {
+                    return;
+                }
                 self.camera_rays(tile, [sx, sy]);
                 self.tracer.recorder().sample();
                 for c in &mut self.tracer.radiance {

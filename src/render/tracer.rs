@@ -78,6 +78,11 @@ impl<'w, L: Lane> Tracer<'w, L> {
         }
     }
 
+    /// Whether the work was given up.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Relaxed)
+    }
+
     /// Where it notes what rays do.
     pub fn recorder(&mut self) -> &mut Recorder {
         &mut self.scratch.recorder
@@ -98,7 +103,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
         self.process::<AT_EYE>(0, &candidates);
         let mut level = 0;
         loop {
-            if self.cancel.load(Relaxed) {
+            if self.is_cancelled() {
                 for level in &mut self.levels {
                     (level.mirrored.len, level.transmitted.len) = (0, 0);
                 }
@@ -156,6 +161,9 @@ impl<'w, L: Lane> Tracer<'w, L> {
         }
         let mut first = self.groups.missed;
         for g in 0..self.groups.found.len() {
+            if self.cancel.load(Relaxed) {
+                return;
+            }
             let (id, count) = self.groups.found[g];
             let members = &self.groups.order[first..first + count as usize];
             first += count as usize;

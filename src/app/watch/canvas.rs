@@ -4,7 +4,8 @@ use crate::app::progress::Bar;
 use crate::film::Film;
 use crate::render::{Crop, Progress};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Duration;
 
 /// Finished tiles, and the bar on the terminal.
 pub struct Canvas {
@@ -14,6 +15,8 @@ pub struct Canvas {
     /// Pixels that will be traced.
     all: u64,
     bar: Bar,
+    ended: Mutex<bool>,
+    bell: Condvar,
 }
 
 /// A tile and its pixels, row by row.
@@ -22,7 +25,14 @@ type Tile = (Crop, Vec<[f32; 3]>);
 impl Canvas {
     /// For a picture of which `all` pixels will be traced; whether anybody will look at it meanwhile.
     pub fn new(all: u64, is_seen: bool, bar: Bar) -> Canvas {
-        Canvas { tiles: is_seen.then(Mutex::default), finished: AtomicU64::new(0), all, bar }
+        Canvas {
+            tiles: is_seen.then(Mutex::default),
+            finished: AtomicU64::new(0),
+            all,
+            bar,
+            ended: Mutex::default(),
+            bell: Condvar::new(),
+        }
     }
 
     /// Puts the tiles that were finished since the last time into `film`.
@@ -38,6 +48,19 @@ impl Canvas {
                 }
             }
         }
+    }
+
+    /// No more tiles come.
+    pub fn end(&self) {
+        self.bar.clear();
+        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        self.bell.notify_all();
+    }
+
+    /// Waits so long at most; whether it has ended.
+    pub fn ends_within(&self, most: Duration) -> bool {
+        let ended = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        *self.bell.wait_timeout_while(ended, most, |ended| !*ended).unwrap_or_else(PoisonError::into_inner).0
     }
 
     /// The share of pixels that is final, 0 to 1.

@@ -69,7 +69,7 @@ pub fn run(args: &WatchArgs) -> Result<Exit, Stop> {
     };
     let desk = Desk::default();
     std::thread::scope(|scope| {
-        let painter = Painter::new(args, output, &follower, Show::new(board.as_deref()), teller);
+        let painter = Painter::new(args, output, &follower, Show::new(board.clone()), teller);
         scope.spawn(|| painter.work(&desk));
         watch(args, &desk, &waiting);
         desk.close();

@@ -25,7 +25,7 @@ pub struct Painter<'w> {
     /// Where finished pictures go, and in what form.
     output: Option<(PathBuf, Format)>,
     follower: &'w Follower,
-    show: Show<'w>,
+    show: Show,
     teller: Teller,
     memory: Memory,
     retracer: Retracer,
@@ -58,7 +58,7 @@ impl<'w> Painter<'w> {
         args: &'w WatchArgs,
         output: Option<(PathBuf, Format)>,
         follower: &'w Follower,
-        show: Show<'w>,
+        show: Show,
         teller: Teller,
     ) -> Self {
         Painter {
@@ -101,7 +101,7 @@ impl<'w> Painter<'w> {
         self.means = means;
     }
 
-    fn paint(&mut self, order: Order, leash: &Leash) -> Result<(), Cancelled> {
+    fn paint(&mut self, order: Order, leash: &Arc<Leash>) -> Result<(), Cancelled> {
         let start = Instant::now();
         self.text += 1;
         self.show.begin(self.text);
@@ -149,7 +149,7 @@ impl<'w> Painter<'w> {
     fn evaluate(
         &mut self,
         order: &Order,
-        leash: &Leash,
+        leash: &Arc<Leash>,
     ) -> Option<(Result<Evaluated, Failure>, Vec<(String, String)>)> {
         let mut run = |set: &[(String, String)]| {
             let request = Request {
@@ -199,7 +199,7 @@ impl<'w> Painter<'w> {
     }
 
     /// Makes the picture; `Err(None)` where it was told to stop.
-    fn draw(&mut self, s: &Sketch, leash: &Leash) -> Result<(), Option<Stop>> {
+    fn draw(&mut self, s: &Sketch, leash: &Arc<Leash>) -> Result<(), Option<Stop>> {
         let world_start = Instant::now();
         let built = self.retracer.build(&s.evaluated.scene, &s.camera, leash.cancel()).ok_or(None)?;
         fits(built.world(), &s.evaluated, &s.options)?;
@@ -246,7 +246,7 @@ impl<'w> Painter<'w> {
     }
 
     /// Traces the picture, and meanwhile shows how far it has come.
-    fn trace(&mut self, built: Built, s: &Sketch, plan: Plan, coarse: Coarse, leash: &Leash) -> Option<Retraced> {
+    fn trace(&mut self, built: Built, s: &Sketch, plan: Plan, coarse: Coarse, leash: &Arc<Leash>) -> Option<Retraced> {
         let pixels = plan.pixels(&s.options);
         let (width, height) = (s.options.width, s.options.height);
         let is_seen = self.show.is_on() && pixels > 0;
@@ -256,11 +256,11 @@ impl<'w> Painter<'w> {
             (Coarse::NotNeeded, Some(film)) => Arc::unwrap_or_clone(film),
             (Coarse::NotNeeded, None) => Film::new(width, height),
         };
-        let canvas = Canvas::new(pixels, is_seen, Bar::new(pixels, self.teller.json));
-        let (show, retracer) = (self.show, &mut self.retracer);
-        show.while_tracing(&canvas, before, (s.text, leash), || {
-            retracer.render(built, &s.options, plan, &canvas, leash.cancel())
-        })
+        let canvas = Arc::new(Canvas::new(pixels, is_seen, Bar::new(pixels, self.teller.json)));
+        self.show.follow(&canvas, before, s.text, leash);
+        let traced = self.retracer.render(built, &s.options, plan, &*canvas, leash.cancel());
+        canvas.end();
+        traced
     }
 
     /// Writes the picture's file; how messages name it. `png` is the very file, if it has been made in memory.

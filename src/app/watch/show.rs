@@ -12,13 +12,13 @@ use crate::lang::Evaluated;
 use crate::render::{Options, Plan, Silent, World, render};
 use crate::scene::AntiAliasing;
 use std::io::Cursor;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The live page, if there is one.
-#[derive(Clone, Copy)]
-pub struct Show<'w> {
-    board: Option<&'w Board>,
+#[derive(Clone)]
+pub struct Show {
+    board: Option<Arc<Board>>,
 }
 
 /// What came of the wish to see something soon.
@@ -41,9 +41,9 @@ const FINE_GRID: u32 = 4;
 /// How often pages see how far the picture has come: smooth to the eye, and the encoding hardly costs.
 const PARTIAL_EVERY: Duration = Duration::from_millis(150);
 
-impl<'w> Show<'w> {
+impl Show {
     /// On `board`, or nowhere.
-    pub fn new(board: Option<&'w Board>) -> Show<'w> {
+    pub fn new(board: Option<Arc<Board>>) -> Show {
         Show { board }
     }
 
@@ -94,52 +94,41 @@ impl<'w> Show<'w> {
         last.map_or(Coarse::NotNeeded, Coarse::Shown)
     }
 
-    /// Does `trace`, and shows every now and then how far `canvas` has come, over what was there `before`.
-    pub fn while_tracing<T>(
+    /// Shows every now and then how far `canvas` has come, over what was there `before`, until it ends.
+    ///
+    /// On a thread that nobody waits for: a picture that is just being encoded mustn't hold up the work on a newer text. What
+    /// it shows too late isn't shown.
+    pub fn follow(
         &self,
-        canvas: &Canvas,
-        before: impl FnOnce() -> Film + Send,
-        (text, leash): (u64, &Leash),
-        trace: impl FnOnce() -> T,
-    ) -> T {
+        canvas: &Arc<Canvas>,
+        before: impl FnOnce() -> Film + Send + 'static,
+        text: u64,
+        leash: &Arc<Leash>,
+    ) {
         if !self.is_on() {
-            return trace();
+            return;
         }
-        let (done, bell) = (Mutex::new(false), Condvar::new());
-        let follow = || {
-            let mut film = Film::new(0, 0);
+        let (show, canvas, leash) = (self.clone(), Arc::clone(canvas), Arc::clone(leash));
+        std::thread::spawn(move || {
+            let mut film = None;
             let mut before = Some(before);
             let mut pause = PARTIAL_EVERY;
-            loop {
-                let guard = done.lock().unwrap_or_else(PoisonError::into_inner);
-                let wait = bell.wait_timeout_while(guard, pause, |done| !*done);
-                if *wait.unwrap_or_else(PoisonError::into_inner).0 || leash.since_cancelled().is_some() {
-                    return;
-                }
+            while !canvas.ends_within(pause) && leash.since_cancelled().is_none() {
                 let start = Instant::now();
-                if let Some(before) = before.take() {
-                    film = before();
-                }
-                canvas.copy_to(&mut film);
-                self.post(|p| p.progress = canvas.progress());
-                self.picture(&film, Level::Partial, (film.width, film.height), text);
+                let Some(film) = film.get_or_insert_with(|| before.take().map(|b| b())) else { return };
+                canvas.copy_to(film);
+                show.post(|p| p.progress = canvas.progress());
+                show.picture(film, Level::Partial, (film.width, film.height), text);
                 leash.shown();
                 // A tenth of one core at most, however large the picture.
                 pause = PARTIAL_EVERY.max(start.elapsed() * 10);
             }
-        };
-        std::thread::scope(|scope| {
-            scope.spawn(follow);
-            let result = trace();
-            *done.lock().unwrap_or_else(PoisonError::into_inner) = true;
-            bell.notify_all();
-            result
-        })
+        });
     }
 
     /// The finished picture's file, and what it shows.
     pub fn finished(&self, file: &[u8], (text, e, world, options): (u64, &Arc<Evaluated>, &Arc<World>, &Options)) {
-        let Some(board) = self.board else { return };
+        let Some(board) = &self.board else { return };
         let id = board.keep_picture(file.to_vec());
         let shown = Shown { picture: id, evaluated: Arc::clone(e), world: Arc::clone(world), options: options.clone() };
         board.show(shown);
@@ -154,7 +143,7 @@ impl<'w> Show<'w> {
     }
 
     fn picture(&self, film: &Film, level: Level, size: (u32, u32), text: u64) {
-        let Some(board) = self.board else { return };
+        let Some(board) = &self.board else { return };
         let mut file = Cursor::new(Vec::new());
         // Into memory it can't fail: a film has pixels.
         if film::encode(film, Format::Png(Depth::Eight), &Recipe::new(), &mut file).is_ok() {
@@ -165,18 +154,20 @@ impl<'w> Show<'w> {
 
     fn put(&self, id: u64, level: Level, (width, height): (u32, u32), text: u64) {
         self.post(|p| {
-            if let Some(old) = &p.picture
-                && old.level == Level::Final
-                && old.text != text
-            {
-                p.previous = Some(old.clone());
+            if let Some(old) = &p.picture {
+                if old.text > text || (old.text == text && old.level == Level::Final) {
+                    return; // too late
+                }
+                if old.level == Level::Final && old.text < text {
+                    p.previous = Some(old.clone());
+                }
             }
             p.picture = Some(Picture { id, level, width, height, text, made: time_of_day() });
         });
     }
 
     fn post(&self, change: impl FnOnce(&mut crate::app::preview::Posted)) {
-        if let Some(board) = self.board {
+        if let Some(board) = &self.board {
             board.post(change);
         }
     }
