@@ -305,6 +305,30 @@ fn what_lies_behind_is_added_once_for_each_surface() {
 }
 
 #[test]
+fn glass_that_stands_on_a_table_shows_the_table() {
+    // The bottom of each lies in the very plane of the table. Wherever they stand, which of both is met isn't left to chance.
+    for k in 0..20 {
+        let mut b = Builder::new();
+        let red = b.color(0.9, 0.1, 0.1);
+        let x = 0.01 * k as f64;
+        let table = b.phong(red, 0.0, 0.0, 0.0);
+        let black = b.gray(0.0);
+        let clear = b.phong(black, 0.0, 0.0, 1.0);
+        b.shape(Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, table);
+        b.shape(Shape::Box { from: v(x - 1.0, 0.0, -1.0), to: v(x, 1.0, 1.0) }, clear);
+        b.shape(
+            Shape::Cone { from: v(x + 0.5, 0.0, 0.0), to: v(x + 0.5, 1.0, 0.0), r: 0.4, top: 0.0, caps: true },
+            clear,
+        );
+        b.light(v(1.0, 8.0, 1.0));
+        b.camera(v(0.3, 6.0, 0.4), v(0.0, 0.0, 0.0), 20.0);
+        b.scene.background = Color::linear_gray(7.0);
+        let film = small(&b.scene);
+        assert!(film.pixels.iter().all(|p| p[0] > 0.0 && p[0] < 1.0), "{x}: what lies below is seen");
+    }
+}
+
+#[test]
 fn shadows_let_through_what_the_object_transmits() {
     for (transmit, expected) in [(0.0, 0.0), (0.5, 0.25), (1.0, 1.0)] {
         let mut b = Builder::new();

@@ -5,11 +5,12 @@ use super::bounds::Bounds;
 use super::bvh::Bvh;
 use super::world::World;
 
-/// What a primitive is known and numbered by.
+/// What a primitive is known and numbered by. Of two surfaces in the same place, that with the lower number is seen: an
+/// opaque one rather than one that lets light through, so that glass on a table stands on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PrimitiveKey {
-    /// Its shape and place.
-    pub geometry: (u64, u64),
+    /// Its shape and place, after whether it lets light through.
+    pub geometry: (bool, u64, u64),
     /// All of its material.
     pub material: u64,
     /// What its material lets through.

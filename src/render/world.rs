@@ -1,7 +1,8 @@
 //! The scene as the tracer sees it from one camera: camera-relative, in tables, and only what this scene requires.
 //!
 //! Primitives and lights are numbered by their content, not by their place in the text. So the order of objects in the text
-//! never changes a pixel: where two surfaces coincide exactly, the same one is always in front.
+//! never changes a pixel: where two surfaces coincide exactly, the same one is always in front, and an opaque one before one
+//! that light goes through.
 
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
@@ -158,7 +159,9 @@ impl World {
             let world_from_object = to_camera.compose(&instance.world_from_object);
             for placed in place(shape, &world_from_object) {
                 let material = digests[instance.material.0 as usize];
-                let geometry = placed_key(&placed);
+                let (a, b) = placed_key(&placed);
+                let number = numbers[instance.material.0 as usize];
+                let geometry = (world.materials[number as usize].lets_through(), a, b);
                 let key = PrimitiveKey { geometry, material: material.all, transmit: material.transmit };
                 let (centre, half_height) = middle(shape);
                 let made = Made { world_from_object, centre, half_height };
