@@ -224,7 +224,6 @@ fn arguments_that_do_not_fit_are_refused() {
     };
     assert_eq!(refused(&["-"]), (Some(2), "error: standard input can't be watched".into()));
     assert_eq!(refused(&["a.scene", "-o", "a.gif"]).0, Some(2));
-    assert_eq!(refused(&["a.scene", "--open"]).0, Some(2));
     assert_eq!(refused(&["a.scene", "-o", "no/such/folder.png"]).0, Some(3));
     assert_eq!(refused(&["a.scene", "--serve", "256.0.0.1:1"]).0, Some(2));
     assert!(Path::new(&p.path("a.scene")).exists());

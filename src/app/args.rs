@@ -120,7 +120,7 @@ pub struct WatchArgs {
     /// Show the picture on a live page: at ADDR, or on this machine alone at any free port.
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", value_parser = address)]
     pub serve: Option<SocketAddr>,
-    /// Open the live page in the browser.
+    /// Open the live page in the browser; serves it too.
     #[arg(long)]
     pub open: bool,
     /// Look at the files every so many seconds instead of waiting for the system to tell: for network file systems.

@@ -23,6 +23,7 @@ use follower::Follower;
 use painter::Painter;
 use show::Show;
 use std::io;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -38,12 +39,16 @@ enum News {
     Stop,
 }
 
+/// Where the live page is if no address is given: on this machine alone, at a port that is free.
+const ANY_PORT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
+
 /// Runs the command until it is interrupted.
 ///
 /// # Errors
 /// The arguments don't fit together, a file can't be written, or the page's address can't be had.
 pub fn run(args: &WatchArgs) -> Result<Exit, Stop> {
-    let output = output(args)?;
+    let address = args.serve.or(args.open.then_some(ANY_PORT));
+    let output = output(args, address.is_some())?;
     let teller = Teller { json: args.json };
     let (news, waiting) = channel();
     stop_on_interrupt(news.clone())?;
@@ -51,8 +56,8 @@ pub fn run(args: &WatchArgs) -> Result<Exit, Stop> {
     // Whether anyone still listens shows in the loop, not here.
     let follower = Follower::new(args.poll, move |paths| drop(told.send(News::Files(paths))))
         .map_err(|e| Stop::system("changes of files can't be noticed", e))?;
-    let board = args.serve.is_some().then(|| Arc::new(board(args, news)));
-    let _server = match (&board, args.serve) {
+    let board = address.map(|_| Arc::new(board(args, news)));
+    let _server = match (&board, address) {
         (Some(board), Some(address)) => {
             let fault = |e| Stop::system(format!("the live page can't be served at {address}"), e);
             let server = preview::serve(Arc::clone(board), address).map_err(fault)?;
@@ -114,19 +119,16 @@ fn short_name(path: &Path) -> String {
 }
 
 /// Where finished pictures go; nowhere where only a page shows them.
-fn output(args: &WatchArgs) -> Result<Option<(PathBuf, Format)>, Stop> {
+fn output(args: &WatchArgs, is_served: bool) -> Result<Option<(PathBuf, Format)>, Stop> {
     let name = shown_name(&args.scene.file);
     if args.scene.file == Path::new("-") {
         let d = Diagnostic::error("standard input can't be watched");
         return Err(Stop::usage(d.note("save the scene in a file, and watch that")));
     }
-    if args.open && args.serve.is_none() {
-        return Err(Stop::usage(Diagnostic::error("`--open` opens the live page: it needs `--serve`")));
-    }
-    let path = match (&args.out, args.serve) {
-        (Some(path), _) => path.clone(),
-        (None, Some(_)) => return Ok(None),
-        (None, None) => match args.scene.file.file_stem() {
+    let path = match &args.out {
+        Some(path) => path.clone(),
+        None if is_served => return Ok(None),
+        None => match args.scene.file.file_stem() {
             Some(stem) => PathBuf::from(stem).with_added_extension("png"),
             None => return Err(Stop::usage(Diagnostic::error(format!("`{name}` names no file")))),
         },
