@@ -10,6 +10,9 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 /// Nothing is cancelled.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
+/// Where the picture is that scenes show.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+
 /// Random numbers by key.
 struct Chance(KeyedHash, u64);
 
@@ -38,7 +41,8 @@ impl Chance {
 /// A scene that edits can change, part by part.
 #[derive(Clone)]
 struct Draft {
-    objects: Vec<[String; 2]>,
+    /// Shape, look, and where it is put.
+    objects: Vec<[String; 3]>,
     lights: Vec<String>,
     rest: [String; 3],
 }
@@ -61,7 +65,14 @@ fn shape(c: &mut Chance) -> String {
 fn look(c: &mut Chance) -> String {
     let [r, g, b] = [c.unit(), c.unit(), c.unit()];
     let color = format!("rgb({r}, {g}, {b})");
-    match c.below(7) {
+    match c.below(12) {
+        7 => format!("matte(checker({color}, white, size: 0.4) |> rotate(z: {}deg))", c.from(0.0, 90.0)),
+        8 => format!("phong(color: {color}, specular: 0.3, bump: noise() |> scale(0.2))"),
+        9 => {
+            format!("matte(image(\"assets/earth.png\", mapping: \"{}\"))", c.one(&["normal", "cylindrical", "planar"]))
+        }
+        10 => format!("phong(color: {color}, transmit: checker(black, white, size: {}))", c.from(0.2, 0.6)),
+        11 => format!("matte(stripes({color}, black, axis: \"x\", size: 0.2))"),
         0 => format!("phong(color: {color}, specular: 0.4, reflect: 0.3)"),
         1 => format!("mirror(tint: {color})"),
         2 => format!("phong(color: {color}, transmit: {})", c.one(&["0.5", "0.9", "1", "noise()"])),
@@ -71,17 +82,32 @@ fn look(c: &mut Chance) -> String {
     }
 }
 
+/// Where a shape is put: transforms that move it, and such that only turn what is painted on it.
+fn place(c: &mut Chance) -> String {
+    match c.below(6) {
+        0 => format!(" |> rotate(y: {}deg)", c.from(0.0, 90.0)),
+        1 => format!(" |> move([{}, 0, 0])", c.from(-1.0, 1.0)),
+        2 => format!(" |> scale({}) |> rotate(x: 20deg)", c.from(0.5, 1.5)),
+        _ => String::new(),
+    }
+}
+
 fn light(c: &mut Chance) -> String {
     let [x, y, z] = c.point();
-    format!("light(at: [{x}, {}, {z}], power: {})", y + 3.0, c.from(0.2, 1.0))
+    let power = c.from(0.2, 1.0);
+    match c.below(4) {
+        0 => format!("light(at: [1, 1.75, -1], power: {power})"), // on the lamp
+        _ => format!("light(at: [{x}, {}, {z}], power: {power})", y + 3.0),
+    }
 }
 
 impl Draft {
     fn new(c: &mut Chance) -> Draft {
         // Some scenes are so large that their tree is kept and only grafted on.
         let n = 2 + c.below(9) + if c.below(5) == 0 { 80 } else { 0 };
+        let lamp = ["sphere(at: [1, 1.25, -1], r: 0.5".into(), "matte(white)".into(), String::new()];
         Draft {
-            objects: (0..n).map(|_| [shape(c), look(c)]).collect(),
+            objects: (0..n).map(|_| [shape(c), look(c), place(c)]).chain([lamp]).collect(),
             lights: (0..c.below(3)).map(|_| light(c)).collect(),
             rest: [
                 "background(#203040)".into(),
@@ -93,29 +119,35 @@ impl Draft {
 
     fn edit(&mut self, c: &mut Chance) {
         let at = c.below(self.objects.len());
-        match c.below(16) {
+        match c.below(20) {
             0..=4 => self.objects[at][1] = look(c),
             5..=7 => self.objects[at][0] = shape(c),
-            8 => self.objects.push([shape(c), look(c)]),
+            8 => self.objects.push([shape(c), look(c), place(c)]),
             9 if self.objects.len() > 1 => drop(self.objects.remove(at)),
             10 => self.objects.reverse(),
             11 => {
                 // A twin in the same place, of another look: which of them is seen?
-                let twin = [self.objects[at][0].clone(), look(c)];
+                let twin = [self.objects[at][0].clone(), look(c), self.objects[at][2].clone()];
                 self.objects.push(twin);
             }
             12 => self.lights.push(light(c)),
             13 => drop(self.lights.pop()),
             14 => self.rest[0] = format!("background(gray({}))", c.unit()),
+            16..=17 => self.objects[at][2] = place(c),
+            18 => {
+                // Nothing but what is painted on it turns.
+                self.objects[at][0] = "sphere(at: [0, 0, 0], r: 1.1".into();
+                self.objects[at][2] = format!(" |> rotate(y: {}deg)", c.from(0.0, 90.0));
+            }
             15 => self.rest[1] = format!("ambient({})", c.one(&["0", "0.1", "0.5"])),
             _ => self.rest[2] = format!("camera(from: [{}, 2, 9], at: [0, 1, 0], fov: 45deg)", c.from(-1.0, 1.0)),
         }
     }
 
     fn scene(&self) -> Scene {
-        let objects = self.objects.iter().map(|[shape, look]| format!("{shape}, mat: {look})\n"));
+        let objects = self.objects.iter().map(|[shape, look, place]| format!("{shape}, mat: {look}){place}\n"));
         let text = objects.chain(self.lights.iter().chain(&self.rest).map(|s| format!("{s}\n"))).collect::<String>();
-        let main = Input::Text { name: "edit".into(), bytes: text.clone().into_bytes(), folder: ".".into() };
+        let main = Input::Text { name: "edit".into(), bytes: text.clone().into_bytes(), folder: FOLDER.into() };
         let request = Request { main, set: Vec::new(), allow_read: Vec::new(), record_arguments: false };
         match evaluate(&request) {
             Ok(e) => e.scene,

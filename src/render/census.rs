@@ -3,7 +3,12 @@
 
 use super::bounds::Bounds;
 use super::bvh::Bvh;
-use super::world::World;
+use super::digest::{MaterialDigest, content_key};
+use super::material::{Slot, Surfacing};
+use super::place::{Form, Placed};
+use super::shape::Kind;
+use super::world::{Made, World};
+use crate::math::Affine;
 
 /// What a primitive is known and numbered by. Of two surfaces in the same place, that with the lower number is seen: an
 /// opaque one rather than one that lets light through, so that glass on a table stands on it.
@@ -11,10 +16,29 @@ use super::world::World;
 pub struct PrimitiveKey {
     /// Its shape and place, after whether it lets light through.
     pub geometry: (bool, u64, u64),
-    /// All of its material.
-    pub material: u64,
-    /// What its material lets through.
+    /// All of its look: its material and, where patterns show, the space that they stand in.
+    pub look: u64,
+    /// The part of its look that shadows show.
     pub transmit: u64,
+}
+
+impl PrimitiveKey {
+    /// The key of a shape at its place. Geometry goes before look, so that painting never brings another of two coincident
+    /// surfaces to the front.
+    pub fn new(placed: &Placed, made: &Made, material: MaterialDigest, surfacing: &Surfacing) -> PrimitiveKey {
+        let (a, b) = geometry(placed);
+        let geometry = (surfacing.lets_through(), a, b);
+        if !surfacing.patterned {
+            return PrimitiveKey { geometry, look: material.all, transmit: material.transmit };
+        }
+        let space = pattern_space(placed, made);
+        let in_space = |digest: u64| content_key([digest, space].into_iter());
+        let transmit = match surfacing.transmit {
+            Slot::Constant(_) => material.transmit,
+            Slot::Pattern(_) => in_space(material.transmit),
+        };
+        PrimitiveKey { geometry, look: in_space(material.all), transmit }
+    }
 }
 
 /// The new number of every old primitive whose shape and place are still there, whatever its look; `u32::MAX` for others.
@@ -113,4 +137,42 @@ impl Change {
     pub fn adds_nothing(&self) -> bool {
         self.added.is_empty() && self.added_planes.is_empty()
     }
+}
+
+/// A number for a shape and its place, and another from the same content: together as good as never the same for two.
+fn geometry(p: &Placed) -> (u64, u64) {
+    let mut bits = Vec::with_capacity(32);
+    let mut add = |v: &[f64]| bits.extend(v.iter().map(|x| x.to_bits()));
+    match &p.form {
+        Form::Framed(kind) => match kind {
+            Kind::Sphere(r) => add(&[1.0, *r]),
+            Kind::Plane => add(&[2.0]),
+            Kind::Disc { r, hole } => add(&[3.0, *r, *hole]),
+            Kind::Cuboid(h) => add(&[4.0, h[0], h[1], h[2]]),
+            Kind::Tube(t) => add(&[5.0, t.radius, t.slope, t.bottom, t.top, t.caps as u8 as f64]),
+            Kind::Ring(r) => add(&[6.0, r.r, r.tube, r.scale]),
+            Kind::Triangle(_) => add(&[7.0]),
+        },
+        Form::Triangle(v, n, shading) => {
+            v.iter().chain([n]).chain(shading.iter().flatten()).for_each(|x| add(x));
+        }
+    }
+    bits.extend(map_bits(&p.world_from_local));
+    let first = content_key(bits.iter().copied());
+    (first, content_key(bits.into_iter().rev()))
+}
+
+/// A number for the space in which a shape's patterns are evaluated, and for what pictures and bumps know of the shape.
+fn pattern_space(p: &Placed, made: &Made) -> u64 {
+    let rescale = p.rescale.iter().flat_map(|r| {
+        let faces = r.faces.iter().flatten().flat_map(|f| [f.0, f.1]);
+        faces.chain([r.inverse]).map(f64::to_bits)
+    });
+    let shape = made.centre.iter().chain([&made.half_height]).map(|x| x.to_bits());
+    content_key(map_bits(&p.made_from_local).chain(rescale).chain(map_bits(&made.world_from_object)).chain(shape))
+}
+
+fn map_bits(map: &Affine) -> impl Iterator<Item = u64> {
+    let all = [map.linear[0], map.linear[1], map.linear[2], map.shift];
+    all.into_iter().flatten().flat_map(|x| [x.hi.to_bits(), x.lo.to_bits()])
 }

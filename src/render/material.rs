@@ -73,7 +73,7 @@ impl Surfacing {
 
 /// Most spaces that are composed with each shape's frame; patterns beyond them go map by map. A limit on the work a batch of
 /// hits begins with, far above what pictures use.
-const MOST_SPACES: usize = 256;
+pub const MOST_SPACES: usize = 256;
 
 /// Compiles materials and the patterns that they need.
 pub struct MaterialCompiler<'s> {

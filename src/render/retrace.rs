@@ -6,6 +6,7 @@ use super::census::{Change, PrimitiveKey};
 use super::cull::{Shaft, margin};
 use super::dispatch::{render_tiles, tiles_of};
 use super::footprint::Footprint;
+use super::material::MOST_SPACES;
 use super::options::{Crop, Options, Progress, RayCounts};
 use super::world::World;
 use crate::film::Film;
@@ -98,7 +99,9 @@ impl Retracer {
             let (old, new) = (&b.built.world, &built.world);
             // The number of threads doesn't matter.
             let same_options = Options { threads: options.threads, ..b.options.clone() } == *options;
-            same_options && old.eye == new.eye && old.camera == new.camera
+            // Beyond that limit, how a pattern is evaluated depends on the other materials.
+            let own_spaces = |w: &World| w.patterns.spaces.len() < MOST_SPACES;
+            same_options && old.eye == new.eye && old.camera == new.camera && own_spaces(old) && own_spaces(new)
         });
         let Some(before) = from else {
             let n = tiles.len();

@@ -87,10 +87,10 @@ struct Entry {
 }
 
 /// How a shape's own space lies.
-struct Made {
-    world_from_object: Affine,
-    centre: [f64; 3],
-    half_height: f64,
+pub(super) struct Made {
+    pub(super) world_from_object: Affine,
+    pub(super) centre: [f64; 3],
+    pub(super) half_height: f64,
 }
 
 impl World {
@@ -158,21 +158,21 @@ impl World {
             }
             let world_from_object = to_camera.compose(&instance.world_from_object);
             for placed in place(shape, &world_from_object) {
-                let material = digests[instance.material.0 as usize];
-                let (a, b) = placed_key(&placed);
-                let number = numbers[instance.material.0 as usize];
-                let geometry = (world.materials[number as usize].lets_through(), a, b);
-                let key = PrimitiveKey { geometry, material: material.all, transmit: material.transmit };
                 let (centre, half_height) = middle(shape);
                 let made = Made { world_from_object, centre, half_height };
+                let material = instance.material.0 as usize;
+                let surfacing = &world.materials[numbers[material] as usize];
+                let key = PrimitiveKey::new(&placed, &made, digests[material], surfacing);
                 entries.push(Entry { key, placed, instance: instance.clone(), made });
             }
         }
-        entries.sort_by_cached_key(|e| e.key); // entries are large: each is moved but once or twice
-        let keys: Vec<PrimitiveKey> = entries.iter().map(|e| e.key).collect();
+        // Entries are large: their numbers are sorted, and they stay where they are.
+        let mut order: Vec<u32> = (0..entries.len() as u32).collect();
+        order.sort_unstable_by_key(|&i| (entries[i as usize].key, i));
+        let keys: Vec<PrimitiveKey> = order.iter().map(|&i| entries[i as usize].key).collect();
         let mut bounded = Vec::with_capacity(entries.len());
-        for entry in entries {
-            world.add(entry, &numbers, &mut bounded);
+        for i in order {
+            world.add(&entries[i as usize], &numbers, &mut bounded);
             if go_on().is_break() {
                 return None;
             }
@@ -199,7 +199,7 @@ impl World {
         numbers
     }
 
-    fn add(&mut self, entry: Entry, numbers: &[u32], bounded: &mut Vec<(u32, Bounds)>) {
+    fn add(&mut self, entry: &Entry, numbers: &[u32], bounded: &mut Vec<(u32, Bounds)>) {
         let Entry { placed, instance, made, .. } = entry;
         let id = self.primitives.len() as u32;
         let material = numbers[instance.material.0 as usize];
@@ -224,7 +224,7 @@ impl World {
             maps.len() as u32 - 1
         });
         let kind = match placed.form {
-            Form::Framed(kind) => kind,
+            Form::Framed(ref kind) => kind.clone(),
             Form::Triangle(v, n, shading) => {
                 self.triangles.push(TriangleData { v, n, shading });
                 bounded.push((id, v.into_iter().fold(Bounds::EMPTY, Bounds::with)));
@@ -352,30 +352,4 @@ fn middle(shape: &crate::scene::Shape) -> ([f64; 3], f64) {
 fn transposed(map: &Affine) -> [[f64; 3]; 3] {
     let m = map.linear_f64();
     std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
-}
-
-/// What a placed shape is numbered by: all of its content but its look, so that painting never brings another of two
-/// coincident surfaces to the front.
-fn placed_key(p: &Placed) -> (u64, u64) {
-    let mut bits = Vec::with_capacity(32);
-    let mut add = |v: &[f64]| bits.extend(v.iter().map(|x| x.to_bits()));
-    match &p.form {
-        Form::Framed(kind) => match kind {
-            Kind::Sphere(r) => add(&[1.0, *r]),
-            Kind::Plane => add(&[2.0]),
-            Kind::Disc { r, hole } => add(&[3.0, *r, *hole]),
-            Kind::Cuboid(h) => add(&[4.0, h[0], h[1], h[2]]),
-            Kind::Tube(t) => add(&[5.0, t.radius, t.slope, t.bottom, t.top, t.caps as u8 as f64]),
-            Kind::Ring(r) => add(&[6.0, r.r, r.tube, r.scale]),
-            Kind::Triangle(_) => add(&[7.0]),
-        },
-        Form::Triangle(v, n, shading) => {
-            v.iter().chain([n]).chain(shading.iter().flatten()).for_each(|x| add(x));
-        }
-    }
-    for row in p.world_from_local.linear.iter().chain([&p.world_from_local.shift]) {
-        add(&row.map(|x| x.hi));
-    }
-    let first = content_key(bits.iter().copied());
-    (first, content_key(bits.into_iter().rev()))
 }
