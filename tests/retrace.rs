@@ -166,7 +166,7 @@ fn compare(seeds: std::ops::Range<u64>, edits: usize, options: &Options) -> (usi
         for step in 0..=edits {
             let scene = draft.scene();
             let built = retracer.build(&scene, &scene.cameras[0], &NEVER).expect("not cancelled");
-            let plan = retracer.plan(&built, options);
+            let plan = retracer.plan(&built, options, &NEVER);
             if step > 0 {
                 (traced, all) = (traced + plan.traced(), all + plan.tiles());
             }
@@ -214,7 +214,7 @@ fn another_size_is_another_picture() {
     for (width, expected) in [(72, 54), (72, 0), (40, 30)] {
         let options = Options { width, ..options() };
         let built = retracer.build(&scene, &scene.cameras[0], &NEVER).expect("not cancelled");
-        let plan = retracer.plan(&built, &options);
+        let plan = retracer.plan(&built, &options, &NEVER);
         assert_eq!(plan.traced(), expected);
         let again = retracer.render(built, &options, plan, &Silent, &NEVER).expect("not cancelled");
         let whole = render(&World::build(&scene, &scene.cameras[0]), &options, &Silent, &NEVER).expect("not cancelled");
@@ -243,7 +243,7 @@ fn a_picture_that_was_cancelled_halfway_leaves_no_trace() {
         for step in 0..10 {
             let scene = draft.scene();
             let built = retracer.build(&scene, &scene.cameras[0], &NEVER).expect("not cancelled");
-            let plan = retracer.plan(&built, &options);
+            let plan = retracer.plan(&built, &options, &NEVER);
             let cancel = AtomicBool::new(false);
             // Every third picture is finished.
             let tiles = if step % 3 == 0 { u32::MAX } else { 1 + c.below(20) as u32 };

@@ -6,6 +6,7 @@
 use super::bounds::Bounds;
 use crate::math::real::{each3, three};
 use crate::math::{Mask, Real};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The tree.
 #[derive(Clone, Debug, Default)]
@@ -41,10 +42,15 @@ const STACK: usize = (FREE_DEPTH + 33) as usize + super::graft::MOST_GRAFTS;
 
 impl Bvh {
     /// Builds the tree over (primitive, box) pairs.
-    pub fn build(mut leaves: Vec<(u32, Bounds)>) -> Bvh {
+    pub fn build(leaves: Vec<(u32, Bounds)>) -> Bvh {
+        Bvh::build_unless(leaves, &AtomicBool::new(false))
+    }
+
+    /// The same; where `cancel` is set meanwhile it ends soon, with a tree that is right but slow.
+    pub fn build_unless(mut leaves: Vec<(u32, Bounds)>, cancel: &AtomicBool) -> Bvh {
         let mut nodes = Vec::with_capacity(leaves.len());
         if !leaves.is_empty() {
-            subdivide(&mut nodes, &mut leaves, 0, 0, &mut Vec::new());
+            subdivide(&mut nodes, &mut leaves, (0, 0), &mut Vec::new(), cancel);
         }
         Bvh { nodes, leaves, ..Bvh::default() }
     }
@@ -167,23 +173,26 @@ fn widest_gap(a: &Bounds, b: &Bounds) -> usize {
 fn subdivide(
     nodes: &mut Vec<BvhNode>,
     leaves: &mut [(u32, Bounds)],
-    first: u32,
-    depth: u32,
+    (first, depth): (u32, u32),
     spare: &mut Vec<(u32, Bounds)>,
+    cancel: &AtomicBool,
 ) {
     let bounds = leaves.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1));
     let at = nodes.len();
     nodes.push(BvhNode { bounds, first, count: leaves.len() as u32 });
+    if cancel.load(Relaxed) {
+        return;
+    }
     let split = match best_split(leaves, &bounds, depth, spare) {
         Some(split) => split,
         None if leaves.len() > LEAF => halve(leaves),
         None => return,
     };
     let (left, right) = leaves.split_at_mut(split);
-    subdivide(nodes, left, first, depth + 1, spare);
+    subdivide(nodes, left, (first, depth + 1), spare, cancel);
     nodes[at].first = nodes.len() as u32;
     nodes[at].count = 0;
-    subdivide(nodes, right, first + split as u32, depth + 1, spare);
+    subdivide(nodes, right, (first + split as u32, depth + 1), spare, cancel);
 }
 
 /// Parts the leaves by the cheapest of the binned planes; `None` where a leaf is cheaper or no plane parts them.

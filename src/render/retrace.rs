@@ -13,7 +13,7 @@ use crate::film::Film;
 use crate::math::Real;
 use crate::scene::{Camera, Precision, Scene};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A world, and what its primitives are known by in the next.
 pub struct Built {
@@ -92,8 +92,9 @@ impl Retracer {
         Some(Built { world: Arc::new(world), keys })
     }
 
-    /// Finds out what has to be traced for the picture of `built`.
-    pub fn plan(&self, built: &Built, options: &Options) -> Plan {
+    /// Finds out what has to be traced for the picture of `built`. Where `cancel` is set meanwhile it ends soon, with more to
+    /// trace than needs be.
+    pub fn plan(&self, built: &Built, options: &Options, cancel: &AtomicBool) -> Plan {
         let tiles = tiles_of(options);
         let from = self.before.as_ref().filter(|b| {
             let (old, new) = (&b.built.world, &built.world);
@@ -110,7 +111,9 @@ impl Retracer {
         let change = Change::between(&before.built.keys, &built.keys, &built.world);
         let difference = Difference::new(&before.built.world, built, &change, options);
         let of_before = before.footprints.iter().zip(&before.spoilt);
-        let moves = |(tile, (f, spoilt)): (&Crop, (&Footprint, &bool))| *spoilt || difference.moves(*tile, f);
+        let moves = |(tile, (f, spoilt)): (&Crop, (&Footprint, &bool))| {
+            *spoilt || cancel.load(Relaxed) || difference.moves(*tile, f)
+        };
         let moved: Vec<bool> = tiles.iter().zip(of_before).map(moves).collect();
         let renumber = |ids: &[u32]| {
             let mut ids: Box<[u32]> = ids.iter().map(|&id| change.renumbered[id as usize]).collect();

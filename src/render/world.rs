@@ -166,12 +166,12 @@ impl World {
                 entries.push(Entry { key, placed, instance: instance.clone(), made });
             }
         }
-        // Entries are large: their numbers are sorted, and they stay where they are.
-        let mut order: Vec<u32> = (0..entries.len() as u32).collect();
-        order.sort_unstable_by_key(|&i| (entries[i as usize].key, i));
-        let keys: Vec<PrimitiveKey> = order.iter().map(|&i| entries[i as usize].key).collect();
+        // Entries are large: their keys and numbers are sorted, and they stay where they are.
+        let mut order: Vec<(PrimitiveKey, u32)> = entries.iter().zip(0..).map(|(e, i)| (e.key, i)).collect();
+        order.sort_unstable();
+        let keys: Vec<PrimitiveKey> = order.iter().map(|o| o.0).collect();
         let mut bounded = Vec::with_capacity(entries.len());
-        for i in order {
+        for (_, i) in order {
             world.add(&entries[i as usize], &numbers, &mut bounded);
             if go_on().is_break() {
                 return None;
@@ -179,7 +179,11 @@ impl World {
         }
         // Boxes are relative to the camera's place.
         let before = before.filter(|(old, _)| old.eye == world.eye);
-        world.bvh = before.and_then(|b| grafted(b, &keys, &bounded)).unwrap_or_else(|| Bvh::build(bounded));
+        world.bvh =
+            before.and_then(|b| grafted(b, &keys, &bounded)).unwrap_or_else(|| Bvh::build_unless(bounded, cancel));
+        if go_on().is_break() {
+            return None;
+        }
         world.find_touched_surfaces();
         Some((world, keys))
     }
@@ -224,7 +228,7 @@ impl World {
             maps.len() as u32 - 1
         });
         let kind = match placed.form {
-            Form::Framed(ref kind) => kind.clone(),
+            Form::Framed(kind) => kind,
             Form::Triangle(v, n, shading) => {
                 self.triangles.push(TriangleData { v, n, shading });
                 bounded.push((id, v.into_iter().fold(Bounds::EMPTY, Bounds::with)));

@@ -204,7 +204,7 @@ impl<'w> Painter<'w> {
         let built = self.retracer.build(&s.evaluated.scene, &s.camera, leash.cancel()).ok_or(None)?;
         fits(built.world(), &s.evaluated, &s.options)?;
         let world = Arc::clone(built.world());
-        let plan = self.retracer.plan(&built, &s.options);
+        let plan = self.retracer.plan(&built, &s.options, leash.cancel());
         let world_seconds = world_start.elapsed().as_secs_f64();
 
         let tiles = (plan.traced(), plan.tiles());
