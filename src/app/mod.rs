@@ -2,6 +2,7 @@
 //! codes.
 
 pub mod args;
+mod argument;
 pub mod check;
 pub mod completions;
 pub mod explain;

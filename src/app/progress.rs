@@ -12,7 +12,7 @@ impl Bar {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(pixels), target);
         // The plain bar serves if the template weren't understood.
-        let style = ProgressStyle::with_template("{bar:40.cyan} {percent:>3} %  {elapsed} passed, {eta} left");
+        let style = ProgressStyle::with_template("{wide_bar:.cyan} {percent:>3} %  {elapsed} passed, {eta} left");
         Bar(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
     }
 

@@ -51,8 +51,8 @@ impl OutputFile {
             return Ok(());
         }
         let mut scratch = BufWriter::with_capacity(1 << 16, self.scratch()?);
-        write(&mut scratch)?;
-        let scratch = scratch.into_inner()?;
+        write(&mut scratch).map_err(nameless)?;
+        let scratch = scratch.into_inner().map_err(|e| nameless(e.into_error()))?;
         if let Ok(old) = fs::metadata(&self.path) {
             // A file that is replaced keeps its permissions, as if it had been written over.
             fs::set_permissions(scratch.path(), old.permissions())?;
@@ -67,17 +67,24 @@ impl OutputFile {
             _ => Path::new("."),
         };
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".rtdsl-");
+        builder.prefix(PREFIX);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
             // What a plain new file gets: the system takes the umask off. Without this it would be the owner's alone.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        // The kind alone: the full error names the scratch file, which the user doesn't know.
-        builder.tempfile_in(folder).map_err(|e| e.kind().into())
+        builder.tempfile_in(folder).map_err(nameless)
     }
 }
+
+/// The fault without the name of the scratch file, which the user doesn't know.
+fn nameless(e: io::Error) -> io::Error {
+    if e.to_string().contains(PREFIX) { e.kind().into() } else { e }
+}
+
+/// How names of scratch files begin.
+const PREFIX: &str = ".rtdsl-";
 
 /// Where the bytes go before the file is there.
 pub type Scratch = BufWriter<NamedTempFile>;

@@ -1,0 +1,137 @@
+//! Values of arguments, read from the command line; what is wrong with one is said in a sentence that shows a right one.
+
+use crate::film::Depth;
+use crate::render::Crop;
+use crate::scene::{AntiAliasing, Precision, range};
+use std::net::SocketAddr;
+use std::time::Duration;
+
+/// `count=50`.
+pub fn assignment(s: &str) -> Result<(String, String), String> {
+    match s.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_string(), value.trim().to_string())),
+        _ => Err("write the parameter's name, `=` and its value, as in `count=50`".into()),
+    }
+}
+
+/// `1280x720`.
+pub fn size(s: &str) -> Result<(u32, u32), String> {
+    let (w, h) = s.split_once(['x', 'X']).ok_or("write width and height in pixels, as in `1280x720`")?;
+    let side = |s: &str| match s.parse::<u64>() {
+        Ok(n) if (1..=range::LARGEST_SIDE as u64).contains(&n) => Ok(n as u32),
+        _ => Err(format!("a side is a whole number of pixels from 1 to {}, not `{s}`", range::LARGEST_SIDE)),
+    };
+    let (w, h) = (side(w)?, side(h)?);
+    let pixels = w as u64 * h as u64;
+    if pixels > range::MOST_PIXELS {
+        return Err(format!("that is {pixels} pixels; {} are the most", range::MOST_PIXELS));
+    }
+    Ok((w, h))
+}
+
+/// `off` or `grid:3`.
+pub fn anti_aliasing(s: &str) -> Result<AntiAliasing, String> {
+    if s == "off" {
+        return Ok(AntiAliasing::Off);
+    }
+    let n = s.strip_prefix("grid:").ok_or("write `off`, or `grid:N` as in `grid:2`")?;
+    match n.parse() {
+        Ok(n) if (1..=AntiAliasing::LARGEST_GRID).contains(&n) => Ok(AntiAliasing::Grid(n)),
+        _ => Err(format!("the grid is a whole number from 1 to {}, not `{n}`", AntiAliasing::LARGEST_GRID)),
+    }
+}
+
+/// `f64` or `f32`.
+pub fn precision(s: &str) -> Result<Precision, String> {
+    match s {
+        "f64" => Ok(Precision::F64),
+        "f32" => Ok(Precision::F32),
+        _ => Err("write `f64` or `f32`".into()),
+    }
+}
+
+/// `8000`, `127.0.0.1`, `[::1]:8000`, `localhost:8000`.
+pub fn address(s: &str) -> Result<SocketAddr, String> {
+    let here = std::net::Ipv4Addr::LOCALHOST;
+    let s = s.replace("localhost", "127.0.0.1");
+    if let Ok(port) = s.parse::<u16>() {
+        return Ok((here, port).into());
+    }
+    if let Ok(ip) = s.parse::<std::net::IpAddr>() {
+        return Ok((ip, 0).into());
+    }
+    s.parse().map_err(|_| "write an address and a port, as in `127.0.0.1:8000`, or one of them".into())
+}
+
+/// Seconds.
+pub fn poll_interval(s: &str) -> Result<Duration, String> {
+    match s.parse::<f64>() {
+        // A tenth of a second is as fast as anyone saves; a day is a typing mistake.
+        Ok(x) if (0.1..=86_400.0).contains(&x) => Ok(Duration::from_secs_f64(x)),
+        _ => Err("write seconds from 0.1 up, as in `2`".into()),
+    }
+}
+
+/// `chess*`.
+pub fn glob_pattern(s: &str) -> Result<glob::Pattern, String> {
+    glob::Pattern::new(s).map_err(|e| e.msg.to_string())
+}
+
+/// `8` or `16`.
+pub fn bits(s: &str) -> Result<Depth, String> {
+    match s {
+        "8" => Ok(Depth::Eight),
+        "16" => Ok(Depth::Sixteen),
+        _ => Err("a PNG has 8 or 16 bits a channel".into()),
+    }
+}
+
+/// `100,50,320,200`.
+pub fn crop(s: &str) -> Result<Crop, String> {
+    let [x, y, width, height] =
+        whole_numbers(s).ok_or("write four whole numbers: left, top, width, height, as in `100,50,320,200`")?;
+    if width == 0 || height == 0 {
+        return Err("a part of no pixels can't be made".into());
+    }
+    Ok(Crop { x, y, width, height })
+}
+
+/// `640,360`.
+pub fn pixel(s: &str) -> Result<(u32, u32), String> {
+    let [x, y] = whole_numbers(s).ok_or("write two whole numbers: column and row, as in `640,360`")?;
+    Ok((x, y))
+}
+
+/// So many whole numbers between commas.
+fn whole_numbers<const N: usize>(s: &str) -> Option<[u32; N]> {
+    let numbers: Option<Vec<u32>> = s.split(',').map(|n| n.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values() {
+        assert_eq!(size("1280x720"), Ok((1280, 720)));
+        for wrong in ["0x5", "5", "-1x4", "1000000000x1", "65536x65536", "5x", "1.5x2", ""] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(anti_aliasing("grid:32"), Ok(AntiAliasing::Grid(32)));
+        for wrong in ["grid:0", "grid:33", "grid", "on", "grid:-1"] {
+            assert!(anti_aliasing(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(crop("1, 2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
+        assert!(crop("1,2,0,4").is_err() && crop("1,2,3").is_err() && crop("-1,2,3,4").is_err());
+        assert_eq!(pixel("640,360"), Ok((640, 360)));
+        assert_eq!(assignment("a = b=c"), Ok(("a".into(), "b=c".into())));
+        let at = |s| address(s).map(|a| a.to_string()).ok();
+        assert_eq!(at("8000").as_deref(), Some("127.0.0.1:8000"));
+        assert_eq!(at("localhost:80").as_deref(), Some("127.0.0.1:80"));
+        assert_eq!(at("::1").as_deref(), Some("[::1]:0"));
+        assert_eq!((at("a.scene"), at("70000"), at("")), (None, None, None));
+        assert!(poll_interval("0").is_err() && poll_interval("NaN").is_err() && poll_interval("0.5").is_ok());
+        assert!(assignment("=1").is_err() && assignment("a").is_err());
+    }
+}
