@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What a picture's bytes depend on: the language, the renderer, and what looks a picture up in a scene and writes its recipe.
-/// Of the floors below only `diag` seems to decide nothing, but texts and their digests pass through it.
+/// `diag` holds the texts, whose digest stands in the recipe.
 const PICTURES: [&str; 12] = [
     "Cargo.lock",
     "grammar",

@@ -221,14 +221,3 @@ fn shown_title(text: &Text) -> String {
 fn broken(e: minijinja::Error) -> Stop {
     Stop::system("a page can't be made", std::io::Error::other(e.to_string()))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_for_a_shell() {
-        assert_eq!(quoted("examples/sea.scene"), "examples/sea.scene");
-        assert_eq!(quoted("a b/it's #1.scene"), "'a b/it'\\''s #1.scene'");
-    }
-}
