@@ -4,10 +4,24 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a picture's bytes depend on.
-const PICTURES: [&str; 7] = ["Cargo.lock", "grammar", "src/film", "src/lang", "src/math", "src/render", "src/scene"];
-/// What a page depends on besides; how a picture is looked up in a scene too.
-const PAGES: [&str; 3] = ["src/app/gallery", "src/app/params.rs", "src/app/view.rs"];
+/// What a picture's bytes depend on: the language, the renderer, and what looks a picture up in a scene and writes its recipe.
+/// `diag` holds the texts, whose digest stands in the recipe.
+const PICTURES: [&str; 12] = [
+    "Cargo.lock",
+    "grammar",
+    "src/app/gallery/maker.rs",
+    "src/app/gallery/shrink.rs",
+    "src/app/picture.rs",
+    "src/app/view.rs",
+    "src/diag",
+    "src/film",
+    "src/lang",
+    "src/math",
+    "src/render",
+    "src/scene",
+];
+/// What a page depends on besides.
+const PAGES: [&str; 3] = ["src/app/gallery", "src/app/params.rs", "src/app/words.rs"];
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -19,6 +19,7 @@ pub mod stats;
 pub mod stop;
 pub mod view;
 pub mod watch;
+pub mod words;
 
 pub use stop::{Exit, Stop};
 

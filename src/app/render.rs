@@ -125,13 +125,22 @@ fn output(args: &RenderArgs) -> Result<(Output, Format), Stop> {
 
 /// The file to write, found to be writable before the work begins, and none of those that the scene reads.
 pub fn target(path: &Path, evaluated: &Evaluated) -> Result<OutputFile, Stop> {
+    spares_sources(path, evaluated)?;
+    OutputFile::new(path).map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))
+}
+
+/// Whether a picture at `path` leaves alone what the scene reads.
+///
+/// # Errors
+/// It is one of those files.
+pub fn spares_sources(path: &Path, evaluated: &Evaluated) -> Result<(), Stop> {
     if let Ok(same) = path.canonicalize()
         && evaluated.files.iter().any(|f| f.path.canonicalize().is_ok_and(|f| f == same))
     {
         let d = Diagnostic::error(format!("the picture would overwrite `{}`, which the scene reads", path.display()));
         return Err(Stop::usage(d.note("give it another name with `-o`")));
     }
-    OutputFile::new(path).map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))
+    Ok(())
 }
 
 fn write_stdout(film: &Film, format: Format, recipe: &Recipe) -> Result<(), Stop> {

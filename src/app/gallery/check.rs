@@ -2,7 +2,8 @@
 //! folder is written; where a picture differs, one that shows how goes into a folder of its own.
 
 use super::crew::{cores, each};
-use super::difference::{Panels, compare, is_panels};
+use super::difference::{Panels, alone, compare, is_panels};
+use super::link::tidy;
 use super::maker::{Made, Maker, Picture};
 use super::project::Project;
 use super::scene_file::SceneFile;
@@ -30,12 +31,7 @@ struct Found {
 /// # Errors
 /// A picture of differences can't be written, or the run was interrupted.
 pub fn check(project: &Project, args: &GalleryArgs, cancel: &AtomicBool) -> Result<Summary, Stop> {
-    if let (Ok(a), Ok(b)) = (args.differences.canonicalize(), project.out.canonicalize())
-        && a == b
-    {
-        let d = Diagnostic::error("pictures of differences would lie among those of the gallery");
-        return Err(Stop::usage(d.note("give them another folder with `--differences`")));
-    }
+    apart(&args.differences, project)?;
     let asked: Vec<&SceneFile> =
         project.scenes.iter().zip(&project.asked).filter(|(_, a)| **a).map(|(s, _)| s).collect();
     let hands = args.jobs.map_or(cores(), |n| n as usize).min(asked.len());
@@ -87,7 +83,7 @@ fn one(maker: &Maker<'_>, scene: &SceneFile, differences: &Path) -> Result<Found
         let path = maker.project.shelf.path(&file);
         let panel_path = differences.join(&file);
         let Ok(was) = fs::read(&path) else {
-            write(&panel_path, is)?;
+            show(alone(is), &panel_path)?;
             let d = Diagnostic::error(format!("`{}` is missing", path.display()));
             found.difference.get_or_insert(d.note(format!("what the scene makes: {}", panel_path.display())));
             found.line.status = Status::Missing;
@@ -104,6 +100,8 @@ fn one(maker: &Maker<'_>, scene: &SceneFile, differences: &Path) -> Result<Found
                 Some(message(&path, &difference, shown.as_ref().map(|s| (panel_path.as_path(), s.as_str()))));
             found.line.panels = shown.map(|_| panel_path.display().to_string());
             found.line.difference = Some((&difference).into());
+        } else {
+            forget(&panel_path);
         }
     }
     Ok(found)
@@ -136,17 +134,47 @@ fn extra(project: &Project, lines: &[Line]) -> Vec<Line> {
 
 /// Writes the panels; their legend.
 fn show(panels: Option<Panels>, path: &Path) -> Result<Option<String>, Stop> {
-    let Some(panels) = panels else { return Ok(None) };
+    let Some(panels) = panels else {
+        forget(path);
+        return Ok(None);
+    };
     write(path, &panels.file()?)?;
     Ok(Some(panels.legend))
 }
 
+/// Writes panels where there is nothing, or older ones.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Stop> {
+    if path.exists()
+        && !fs::metadata(path).is_ok_and(|m| m.is_file() && fs::read(path).is_ok_and(|old| is_panels(&old)))
+    {
+        let d = Diagnostic::error(format!("`{}` isn't a picture of differences", path.display()));
+        return Err(Stop::usage(d.note("it would be overwritten: give another folder with `--differences`")));
+    }
     let folder = path.parent().map_or(PathBuf::from("."), Path::to_path_buf);
     let written = fs::create_dir_all(folder)
         .and_then(|()| OutputFile::new(path))
         .and_then(|file| file.write(|out| out.write_all(bytes)));
     written.map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))
+}
+
+/// Whether pictures of differences in `folder` lie apart from what they are about.
+fn apart(folder: &Path, project: &Project) -> Result<(), Stop> {
+    let folder = real(folder);
+    let (what, note) = if folder.starts_with(real(&project.out)) {
+        ("among those of the gallery", "give them a folder outside of it with `--differences`")
+    } else if folder == project.folder {
+        ("among the scenes", "give them a folder of their own with `--differences`")
+    } else {
+        return Ok(());
+    };
+    Err(Stop::usage(Diagnostic::error(format!("pictures of differences would lie {what}")).note(note)))
+}
+
+/// `path` with links followed as far as it is there.
+fn real(path: &Path) -> PathBuf {
+    let path = tidy(&std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf()));
+    let there = path.ancestors().find_map(|p| Some(p.canonicalize().ok()?.join(path.strip_prefix(p).ok()?)));
+    there.unwrap_or(path)
 }
 
 /// Removes the panels of an earlier check: they would tell of a difference that is no more.

@@ -1,6 +1,8 @@
 //! Whether a picture is what it was, and where not.
 
+use super::mark::entries;
 use crate::film::Recipe;
+use crate::scene::range::MOST_PIXELS;
 use image::RgbImage;
 use std::io::{self, Cursor};
 
@@ -55,8 +57,21 @@ pub fn compare(was: &[u8], is: &[u8]) -> Option<(Difference, Option<Panels>)> {
     Some((Difference::Pixels(numbers), Some(panels)))
 }
 
+/// The picture file `is` as the only panel; `None` if it isn't one.
+pub fn alone(is: &[u8]) -> Option<Panels> {
+    decoded(is).map(|new| Panels::of(&[&new], "is"))
+}
+
+/// Bytes of the largest pixel that a PNG file can have: four channels of 16 bits.
+const PIXEL_BYTES: u64 = 8;
+
+/// The picture in a PNG file, as large as any that this program makes.
 fn decoded(file: &[u8]) -> Option<RgbImage> {
-    Some(image::load_from_memory_with_format(file, image::ImageFormat::Png).ok()?.into_rgb8())
+    let mut reader = image::ImageReader::with_format(Cursor::new(file), image::ImageFormat::Png);
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(MOST_PIXELS * PIXEL_BYTES);
+    reader.limits(limits);
+    Some(reader.decode().ok()?.into_rgb8())
 }
 
 fn numbers(old: &RgbImage, new: &RgbImage) -> Numbers {
@@ -73,21 +88,12 @@ fn numbers(old: &RgbImage, new: &RgbImage) -> Numbers {
 
 /// The names of the recipe's entries that aren't the same.
 fn changed_entries(was: &[u8], is: &[u8]) -> Vec<String> {
-    let (was, is) = (entries(was), entries(is));
+    let (was, is) = (entries(Cursor::new(was)), entries(Cursor::new(is)));
     let mut names: Vec<String> = was.iter().chain(&is).map(|(name, _)| name.clone()).collect();
     names.sort();
     names.dedup();
     names.retain(|n| was.iter().find(|e| e.0 == *n) != is.iter().find(|e| e.0 == *n));
     names
-}
-
-/// The texts within a PNG file.
-fn entries(file: &[u8]) -> Vec<(String, String)> {
-    let Ok(reader) = png::Decoder::new(Cursor::new(file)).read_info() else { return Vec::new() };
-    let info = reader.info();
-    let plain = info.uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
-    let unicode = info.utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap_or_default()));
-    plain.chain(unicode).collect()
 }
 
 /// Pictures beside each other.
@@ -137,7 +143,7 @@ impl Panels {
 
 /// Whether a file is a panel picture.
 pub fn is_panels(file: &[u8]) -> bool {
-    entries(file).iter().any(|(name, _)| name == LEGEND)
+    entries(Cursor::new(file)).iter().any(|(name, _)| name == LEGEND)
 }
 
 #[cfg(test)]

@@ -6,18 +6,19 @@ use super::scene_file::SceneFile;
 use super::shrink::{scaled, shrink};
 use crate::app::Stop;
 use crate::app::args::ViewArgs;
-use crate::app::load::{load, request};
+use crate::app::load::request;
 use crate::app::params::allowed;
 use crate::app::picture::{fits, look, recipe_of};
 use crate::app::progress::Bar;
+use crate::app::render::spares_sources;
 use crate::app::view::precision_word;
 use crate::diag::Diagnostic;
 use crate::film::{self, Depth, Film, Format, Recipe};
-use crate::lang::Evaluated;
-use crate::render::{self, World};
+use crate::lang::{self, Evaluated, Memory};
+use crate::render::{self, Retracer};
 use crate::scene::range;
 use std::io::{self, Cursor};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
 
 /// What became of a scene.
@@ -68,7 +69,11 @@ impl Maker<'_> {
     /// The scene is wrong, or can't be drawn at the size asked for.
     pub fn make(&self, scene: &SceneFile) -> Result<Made, Stop> {
         let start = Instant::now();
-        let evaluated = load(&request(&scene.path, &[], &self.project.allow_read)?, true)?;
+        let request = request(&scene.path, &[], &self.project.allow_read)?;
+        let Some(evaluated) = lang::evaluate_again(&request, &mut Memory::default(), self.cancel) else {
+            return Ok(Made::Nothing);
+        };
+        let evaluated = evaluated?;
         let used = self.project.used(scene, &evaluated);
         if evaluated.is_library {
             return Ok(Made::Library(used));
@@ -76,16 +81,23 @@ impl Maker<'_> {
         if !self.quiet {
             self.bar.pause(|| crate::app::stop::print_diagnostics(&evaluated.warnings, &evaluated.sources));
         }
+        // Where pictures lie beside their scenes, a scene might show its own.
+        for name in [scene.picture(), scene.thumbnail()] {
+            spares_sources(&self.project.shelf.path(&name), &evaluated)?;
+        }
         let (camera, mut options) = look(&evaluated, &self.view(&evaluated)?)?;
         options.threads = Some(self.threads);
         let world_start = Instant::now();
-        let world = World::build(&evaluated.scene, camera);
-        fits(&world, &evaluated, &options)?;
+        let Some(built) = Retracer::default().build(&evaluated.scene, camera, self.cancel) else {
+            return Ok(Made::Nothing);
+        };
+        let world = built.world();
+        fits(world, &evaluated, &options)?;
         let world_time = world_start.elapsed();
 
         self.bar.lengthen(options.width as u64 * options.height as u64);
         let render_start = Instant::now();
-        let Some(rendered) = render::render(&world, &options, self.bar, self.cancel) else {
+        let Some(rendered) = render::render(world, &options, self.bar, self.cancel) else {
             return Ok(Made::Nothing);
         };
         let render_time = render_start.elapsed();
@@ -94,6 +106,9 @@ impl Maker<'_> {
         let film = rendered.film;
         let file = png(&film, &recipe_of(&evaluated, &options, camera))?;
         let encode_time = encode_start.elapsed();
+        if self.cancel.load(Relaxed) {
+            return Ok(Made::Nothing);
+        }
         let small =
             (film.width > THUMBNAIL_WIDTH && self.project.has_thumbnail(scene)).then(|| shrink(&film, THUMBNAIL_WIDTH));
         let thumbnail = small.as_ref().map(|small| png(small, &of_a_thumbnail(&film))).transpose()?;
@@ -158,4 +173,48 @@ pub fn png(film: &Film, recipe: &Recipe) -> io::Result<Vec<u8>> {
     let mut memory = Cursor::new(Vec::new());
     film::encode(film, Format::Png(Depth::Eight), recipe, &mut memory)?;
     Ok(memory.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::args::{Cli, Command};
+    use clap::Parser;
+    use std::fs;
+
+    /// Makes the only scene of a folder, whose pictures would lie beside it.
+    fn made(text: &str, interrupted: bool) -> Result<Made, Stop> {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.scene"), text).unwrap();
+        let picture = png(&Film::new(4, 4), &Recipe::new()).unwrap();
+        fs::write(folder.path().join("a.png"), picture).unwrap();
+        let dir = folder.path().to_str().unwrap();
+        let Command::Gallery(args) = Cli::parse_from(["rtdsl", "gallery", dir, "-o", dir]).command else {
+            panic!("another command")
+        };
+        let project = Project::open(&args).unwrap();
+        let cancel = AtomicBool::new(interrupted);
+        let bar = Bar::new(0, true);
+        let maker = Maker { project: &project, threads: 1, bar: &bar, cancel: &cancel, quiet: true };
+        maker.make(&project.scenes[0])
+    }
+
+    const SCENE: &str = "rtdsl 1\nsphere()\nlight(at: [0, 0, 5])\nrender(size: [8, 8])\n";
+
+    #[test]
+    fn interruptions_end_it_anywhere() {
+        assert!(matches!(made(SCENE, false), Ok(Made::Picture(_))));
+        assert!(matches!(made(SCENE, true), Ok(Made::Nothing)));
+        // The evaluation itself would take its time.
+        let slow = format!("{SCENE}var i = 0\nfor k in 1..=100000000 {{ i = i + 1 }}\n");
+        assert!(matches!(made(&slow, true), Ok(Made::Nothing)));
+    }
+
+    #[test]
+    fn a_scene_doesn_t_lose_what_it_reads() {
+        let text = SCENE.replace("sphere()", "sphere(mat: matte(image(\"a.png\")))");
+        let Err(stop) = made(&text, false) else { panic!("it was made") };
+        assert!(stop.text().contains("the picture would overwrite") && stop.text().contains("which the scene reads"));
+        assert_eq!(stop.exit, crate::app::Exit::Usage);
+    }
 }

@@ -7,6 +7,9 @@ use std::collections::BTreeMap;
 /// The manifest's name in the gallery's folder.
 pub const FILE: &str = "gallery.json";
 
+/// Who makes it.
+const MADE_BY: &str = "rtdsl gallery";
+
 /// Of the manifest's form; another number's isn't understood.
 const FORMAT: u32 = 1;
 
@@ -112,7 +115,7 @@ impl Manifest {
     pub fn new(folder: String) -> Manifest {
         Manifest {
             format: FORMAT,
-            made_by: "rtdsl gallery".into(),
+            made_by: MADE_BY.into(),
             folder,
             site: String::new(),
             scenes: BTreeMap::new(),
@@ -120,10 +123,17 @@ impl Manifest {
         }
     }
 
-    /// The manifest that `bytes` hold; `None` where they are something else, damaged, or of another form.
-    pub fn read(bytes: &[u8]) -> Option<Manifest> {
-        let manifest: Manifest = serde_json::from_slice(bytes).ok()?;
-        (manifest.format == FORMAT).then_some(manifest)
+    /// The manifest that `bytes` hold. `Ok(None)` where it is lost: there is nothing, or something damaged (as a merge leaves
+    /// it), or another version's. That costs time, nothing else.
+    ///
+    /// # Errors
+    /// They are something else, of another program.
+    pub fn read(bytes: &[u8]) -> Result<Option<Manifest>, Foreign> {
+        let Ok(value) = serde_json::from_slice::<serde_json::Value>(bytes) else { return Ok(None) };
+        if value.get("made_by").is_none_or(|by| by != MADE_BY) {
+            return Err(Foreign);
+        }
+        Ok(serde_json::from_slice(bytes).ok().filter(|m: &Manifest| m.format == FORMAT))
     }
 
     /// The file's bytes.
@@ -134,6 +144,10 @@ impl Manifest {
         bytes
     }
 }
+
+/// A file of the manifest's name that another program made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Foreign;
 
 impl Times {
     /// All phases together.
@@ -168,11 +182,16 @@ mod tests {
             m.scenes.insert(name.into(), Entry::default());
         }
         let bytes = m.bytes();
-        assert_eq!(Manifest::read(&bytes).as_ref(), Some(&m));
-        assert_eq!(Manifest::read(&bytes).unwrap().bytes(), bytes);
+        let read = Manifest::read(&bytes).unwrap().unwrap();
+        assert_eq!((read.bytes(), read), (bytes, m.clone()));
         m.format += 1;
-        assert_eq!(Manifest::read(&m.bytes()), None, "of a later version");
-        assert_eq!(Manifest::read(b"<<<<<<< HEAD\n{}"), None);
+        assert_eq!(Manifest::read(&m.bytes()), Ok(None), "of a later version");
+        for lost in ["", "{", "<<<<<<< HEAD\n{}", "{\"made_by\": \"rtdsl gallery\"}"] {
+            assert_eq!(Manifest::read(lost.as_bytes()), Ok(None), "{lost}");
+        }
+        for foreign in ["{}", "[]", "1", "{\"made_by\": \"another\", \"folder\": \"x\"}"] {
+            assert_eq!(Manifest::read(foreign.as_bytes()), Err(Foreign), "{foreign}");
+        }
     }
 
     #[test]

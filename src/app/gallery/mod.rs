@@ -10,6 +10,7 @@ pub mod link;
 pub mod listing;
 pub mod maker;
 pub mod manifest;
+pub mod mark;
 pub mod page;
 pub mod project;
 pub mod refresh;
@@ -38,8 +39,13 @@ pub fn run(args: &GalleryArgs) -> Result<Exit, Stop> {
     let project = Project::open(args)?;
     let cancel = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&cancel);
-    // Where there is no handler to be had, an interrupt ends the program at once, which leaves every file whole too.
-    let _ = ctrlc::set_handler(move || flag.store(true, Relaxed));
+    // Where there is no handler to be had, an interrupt ends the program at once, which leaves every file whole too. So does
+    // the second one: what was made meanwhile is then made again by the next run.
+    let _ = ctrlc::set_handler(move || {
+        if flag.swap(true, Relaxed) {
+            std::process::exit(Exit::System as i32);
+        }
+    });
     let mut summary = match args.check {
         true => check::check(&project, args, &cancel)?,
         false => refresh::refresh(&project, args, &cancel)?,

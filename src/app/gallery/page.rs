@@ -1,6 +1,7 @@
-//! One page: what a template is given, and the words for numbers.
+//! One page: what a template is given.
 
 use super::manifest::{Figures, ParamRow, Times};
+use crate::app::words::{duration, thousands};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
@@ -198,34 +199,9 @@ pub fn times(t: &Times) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Microseconds in words, with three digits at most.
-pub fn duration(microseconds: u64) -> String {
-    let x = microseconds as f64;
-    match microseconds {
-        0..1_000 => format!("{:.2} ms", x / 1e3),
-        1_000..10_000 => format!("{:.1} ms", x / 1e3),
-        10_000..1_000_000 => format!("{:.0} ms", x / 1e3),
-        _ => format!("{:.2} s", x / 1e6),
-    }
-}
-
-/// `1,234,567`
-pub fn thousands(n: u64) -> String {
-    let digits = n.to_string();
-    let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).unwrap_or_default()).collect();
-    groups.join(",")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_in_words() {
-        assert_eq!([0, 7, 1234, 1_234_567].map(thousands), ["0", "7", "1,234", "1,234,567"]);
-        assert_eq!([120, 5_300, 53_000, 5_310_000].map(duration), ["0.12 ms", "5.3 ms", "53 ms", "5.31 s"]);
-    }
 
     #[test]
     fn values_are_escaped() {

@@ -1,7 +1,7 @@
 //! What a run works on: the folder of scenes, the gallery's folder and what the last run left there, the options.
 
 use super::link::{slashed, tidy, way};
-use super::manifest::{self, Entry, Manifest, Used, digest, digest_of};
+use super::manifest::{self, Entry, Foreign, Manifest, Used, digest, digest_of};
 use super::scene_file::{SceneFile, find};
 use super::shelf::Shelf;
 use crate::app::Stop;
@@ -12,6 +12,7 @@ use crate::lang::Evaluated;
 use crate::scene::AntiAliasing;
 use std::collections::HashMap;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -70,7 +71,7 @@ impl Project {
         }
         let to_scenes = out.canonicalize().ok().and_then(|out| way(&out, &folder)).and_then(|w| slashed(&w));
         let to_scenes = to_scenes.unwrap_or_default();
-        let old = fs::read(out.join(manifest::FILE)).ok().and_then(|bytes| Manifest::read(&bytes));
+        let old = old_manifest(&out)?;
         if let Some(other) = old.as_ref().map(|m| &m.folder).filter(|f| **f != to_scenes) {
             let d = Diagnostic::error(format!("`{}` holds the gallery of another folder: `{other}`", out.display()))
                 .note("making this one there would remove that one's pictures; give it its own folder with `-o`")
@@ -140,8 +141,13 @@ impl Project {
 
     /// The digest of the file at `path`, from the folder of the scenes; `None` where there is none.
     pub fn digest(&self, path: &str) -> Option<String> {
-        let mut known = self.digests.lock().unwrap_or_else(PoisonError::into_inner);
-        known.entry(path.to_string()).or_insert_with(|| self.bytes(path).map(|bytes| digest(&bytes))).clone()
+        let known = || self.digests.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(digest) = known().get(path) {
+            return digest.clone();
+        }
+        // Others go on meanwhile; two that ask for the same file at once both read it.
+        let found = self.bytes(path).map(|bytes| digest(&bytes));
+        known().entry(path.to_string()).or_insert(found).clone()
     }
 
     /// The text at `path`, from the folder of the scenes; what isn't UTF-8 in it is replaced.
@@ -180,6 +186,20 @@ impl Project {
         let best = if same(&tidied) == same(&path) { tidied } else { path };
         slashed(&best).unwrap_or_else(|| best.display().to_string())
     }
+}
+
+/// What the last run left in `out`, as its manifest tells.
+fn old_manifest(out: &Path) -> Result<Option<Manifest>, Stop> {
+    let path = out.join(manifest::FILE);
+    let bytes = match fs::read(&path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(e) => return Err(Stop::system(format!("`{}` can't be read", path.display()), e)),
+    };
+    Manifest::read(&bytes).map_err(|Foreign| {
+        let d = Diagnostic::error(format!("`{}` wasn't made by rtdsl", path.display()));
+        Stop::usage(d.note("the gallery would overwrite it: give it another folder with `-o`, or move the file"))
+    })
 }
 
 /// Whether a pattern matches a scene's path, with or without `.scene`.

@@ -8,9 +8,9 @@ use super::project::Project;
 use super::scene_file::SceneFile;
 use super::site::Site;
 use super::summary::{Line, Status, Summary};
-use crate::app::Stop;
 use crate::app::args::GalleryArgs;
 use crate::app::progress::Bar;
+use crate::app::{Exit, Stop};
 use std::collections::BTreeSet;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -42,6 +42,9 @@ struct Outcome {
 /// # Errors
 /// A page or the manifest can't be written, or the run was interrupted.
 pub fn refresh(project: &Project, args: &GalleryArgs, cancel: &AtomicBool) -> Result<Summary, Stop> {
+    // What can't be written in the end is found out before anything is rendered.
+    project.shelf.hold_manifest()?;
+    Site::names(project).try_for_each(|name| project.shelf.claim(&name))?;
     let asked: Vec<(&SceneFile, bool)> = project.scenes.iter().zip(project.asked.iter().copied()).collect();
     let plans = each(&asked, cores(), |(scene, asked)| plan(project, scene, *asked));
     let mut work: Vec<(&SceneFile, &Plan)> = project.scenes.iter().zip(&plans).collect();
@@ -153,7 +156,9 @@ fn make(maker: &Maker<'_>, scene: &SceneFile, reason: &str) -> Result<Option<Out
     let project = maker.project;
     let failed = |stop| (Status::Failed, stop);
     project.shelf.claim(&scene.picture()).map_err(failed)?;
-    let made = maker.make(scene).map_err(|stop| (Status::Broken, stop))?;
+    // Nothing is wrong with a scene whose picture only needs another place.
+    let status = |stop: &Stop| if stop.exit == Exit::Usage { Status::Failed } else { Status::Broken };
+    let made = maker.make(scene).map_err(|stop| (status(&stop), stop))?;
     let (used, picture) = match made {
         Made::Nothing => return Ok(None),
         Made::Library(used) => (used, None),

@@ -8,6 +8,7 @@ use super::project::{PAGES, Project};
 use super::scene_file::SceneFile;
 use super::title::{Title, title};
 use crate::app::Stop;
+use crate::app::words::quoted;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -34,7 +35,16 @@ struct Text {
     title: Title,
 }
 
+/// The page that lists all others, and how all look.
+const INDEX: &str = "index.html";
+const STYLE: &str = "style.css";
+
 impl Site<'_> {
+    /// The files of a site that are known before any scene was looked at.
+    pub fn names(project: &Project) -> impl Iterator<Item = String> {
+        [INDEX, STYLE].map(String::from).into_iter().chain(project.scenes.iter().map(SceneFile::page))
+    }
+
     /// A digest of all that the pages show. While it stays, so do they.
     pub fn digest(&self) -> String {
         // Maps of texts and numbers always have a JSON form.
@@ -69,7 +79,7 @@ impl Site<'_> {
             };
             files.insert(text.page.clone(), templates.scene(&page).map_err(broken)?.into_bytes());
         }
-        let index = Text { page: "index.html".into(), ..Text::default() };
+        let index = Text { page: INDEX.into(), ..Text::default() };
         let page = IndexPage {
             folder: self.folder_name(),
             cards: scenes.iter().map(|t| self.card(t)).collect(),
@@ -77,7 +87,7 @@ impl Site<'_> {
         };
         let html = templates.index(&page).map_err(broken)?;
         files.insert(index.page, html.into_bytes());
-        files.insert("style.css".into(), include_bytes!("templates/style.css").to_vec());
+        files.insert(STYLE.into(), include_bytes!("templates/style.css").to_vec());
         Ok(files)
     }
 
@@ -207,27 +217,7 @@ fn shown_title(text: &Text) -> String {
     if text.title.title.is_empty() { text.path.clone() } else { text.title.title.clone() }
 }
 
-/// A word for a POSIX shell.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=,+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_string(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
-}
-
 /// The templates are the program's own: this is a fault of the program, told like any other.
 fn broken(e: minijinja::Error) -> Stop {
     Stop::system("a page can't be made", std::io::Error::other(e.to_string()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_for_a_shell() {
-        assert_eq!(quoted("examples/sea.scene"), "examples/sea.scene");
-        assert_eq!(quoted("a b/it's #1.scene"), "'a b/it'\\''s #1.scene'");
-    }
 }

@@ -1,7 +1,7 @@
 //! What a run did, for people and for programs.
 
 use super::difference::{Difference, Numbers};
-use super::page::{duration, thousands};
+use crate::app::words::{duration, thousands};
 use crate::app::{Exit, Stop};
 use crate::diag::{Diagnostic, Report};
 use serde::Serialize;

@@ -13,50 +13,49 @@ pub fn bound_names<'t>(text: &'t str, tokens: &[Token]) -> HashSet<&'t str> {
         .collect();
     let word = |i: usize| all.get(i).map_or("", |t| t.1);
     let mut names = HashSet::new();
+    let mut open: Vec<List> = Vec::new();
     for (i, (class, this)) in all.iter().enumerate() {
         match (class, *this) {
-            (Class::Keyword, "let" | "var" | "fn" | "param" | "for" | "as") => {
-                names.extend(name_at(&all, i + 1));
-                if *this == "fn" && word(i + 2) == "(" {
-                    listed(&all, i + 2, &mut names);
+            (Class::Keyword, "let" | "var" | "fn" | "param" | "for" | "as") => names.extend(name_at(&all, i + 1)),
+            (Class::Sign, "=>") if i > 0 => names.extend(name_at(&all, i - 1)),
+            (Class::Sign, "(" | "[" | "{") => {
+                // fn name(a, b); import "file.scene" { a, b }
+                let two_before = i.checked_sub(2).and_then(|k| all.get(k));
+                let binds = match *this {
+                    "(" => two_before == Some(&(Class::Keyword, "fn")),
+                    "{" => two_before.is_some_and(|t| t.1 == "import"),
+                    _ => false,
+                };
+                open.push(List { round: *this == "(", binds, names: name_at(&all, i + 1).into_iter().collect() });
+            }
+            (Class::Sign, ",") => {
+                if let Some(list) = open.last_mut() {
+                    list.names.extend(name_at(&all, i + 1));
                 }
             }
-            // import "file.scene" { a, b }
-            (Class::Sign, "{") if i >= 2 && word(i - 2) == "import" => drop(listed(&all, i, &mut names)),
-            (Class::Sign, "=>") if i > 0 => names.extend(name_at(&all, i - 1)),
-            (Class::Sign, "(") => {
+            (Class::Sign, ")" | "]" | "}") => {
                 // (a, b) => …; what stands in other brackets isn't bound by them.
-                let mut parameters = HashSet::new();
-                let end = listed(&all, i, &mut parameters);
-                if word(end + 1) == "=>" {
-                    names.extend(parameters);
-                }
+                let list = open.pop().filter(|l| l.binds || l.round && word(i + 1) == "=>");
+                names.extend(list.into_iter().flat_map(|l| l.names));
             }
             _ => {}
         }
     }
+    // Nothing closes these yet, as in a text that is being written.
+    names.extend(open.into_iter().filter(|l| l.binds).flat_map(|l| l.names));
     names
+}
+
+/// What stands between two brackets, as far as it was read.
+struct List<'t> {
+    /// Between `(` and `)`.
+    round: bool,
+    /// It binds names, whatever follows.
+    binds: bool,
+    /// Those that its items start with.
+    names: Vec<&'t str>,
 }
 
 fn name_at<'t>(all: &[(Class, &'t str)], i: usize) -> Option<&'t str> {
     all.get(i).filter(|t| t.0 == Class::Name).map(|t| t.1)
-}
-
-/// Adds the names that start the items between the bracket at `open` and its end, whose number is returned.
-fn listed<'t>(all: &[(Class, &'t str)], open: usize, names: &mut HashSet<&'t str>) -> usize {
-    let mut depth = 0usize;
-    for (i, (class, sign)) in all.iter().enumerate().skip(open) {
-        match (class, *sign) {
-            (Class::Sign, "(" | "[" | "{") => depth += 1,
-            (Class::Sign, ")" | "]" | "}") => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth == 0 {
-            return i;
-        }
-        if i == open || depth == 1 && *sign == "," {
-            names.extend(name_at(all, i + 1));
-        }
-    }
-    all.len()
 }

@@ -154,6 +154,33 @@ fn every_byte_of_the_examples_and_of_damaged_ones() {
     assert!(seen > 10);
 }
 
+#[test]
+fn brackets_without_end_take_no_square_of_time() {
+    // Looked at anew for each bracket, any of these would keep a machine busy for the best part of an hour.
+    for unit in ["(", "[", "{", "([{", "(a,", ")"] {
+        let text = unit.repeat((1 << 20) / unit.len());
+        assert_eq!(highlight(&text).len(), text.len(), "{unit}");
+    }
+}
+
+#[test]
+fn names_are_bound_by_the_right_brackets() {
+    // Each of these hides a word of the catalogue, in brackets within brackets too, and where the text breaks off.
+    for text in [
+        "fn f(a, sphere) = sphere",
+        "let f = ([1, (2, 3)], sphere) => sphere",
+        "((a, sphere) => sphere",
+        "import \"x.scene\" { a, sphere } sphere",
+        "fn f(sphere, a: [",
+    ] {
+        assert!(!shown(text).contains(&"Word:sphere".to_string()), "{text}");
+    }
+    // None of these does.
+    for text in ["f(a, sphere)", "([sphere]) => 1", "(a) + (sphere, 1)", "{ a, sphere }"] {
+        assert!(shown(text).contains(&"Word:sphere".to_string()), "{text}");
+    }
+}
+
 /// Comments and texts left out, a right text stays right; with the quotes of its texts lost, each is a mistake: so what is
 /// shown as a comment is none to the grammar, and what is shown as a text is one.
 fn agrees_with_the_grammar(text: &str) {
