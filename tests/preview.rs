@@ -24,7 +24,7 @@ struct Page {
 impl Page {
     fn new() -> Page {
         let (send, asks) = mpsc::channel();
-        let board = Arc::new(Board::new("run 1".into(), "a.scene".into(), send));
+        let board = Arc::new(Board::new("run 1".into(), "a.scene".into(), move |ask| send.send(ask).is_ok()));
         let server = serve(Arc::clone(&board), "127.0.0.1:0".parse().unwrap()).unwrap();
         Page { board, asks, server }
     }
@@ -352,7 +352,7 @@ fn parameters_are_asked_for() {
 #[test]
 fn a_taken_address_is_reported() {
     let page = Page::new();
-    let board = Arc::new(Board::new(String::new(), String::new(), mpsc::channel().0));
+    let board = Arc::new(Board::new(String::new(), String::new(), |_| false));
     assert!(serve(board, page.server.address()).is_err_and(|e| e.kind() == ErrorKind::AddrInUse));
 }
 
