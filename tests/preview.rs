@@ -370,3 +370,27 @@ fn a_dropped_server_ends_and_its_address_is_free() {
     let again = serve(page.board, address).unwrap();
     assert_eq!(again.address(), address);
 }
+
+#[test]
+fn idle_connections_hold_their_places_for_a_while_only() {
+    use axum::serve::Listener;
+    use rtdsl::app::preview::listener::Limited;
+    use std::time::Duration;
+    use tokio::io::{AsyncRead, ReadBuf};
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let mut limited = Limited::new(listener, 1, Duration::from_millis(20));
+        let _clients = [(); 2].map(|()| std::net::TcpStream::connect(address).unwrap());
+        let (mut first, _) = limited.accept().await;
+        let second = tokio::time::timeout(Duration::from_millis(100), limited.accept()).await;
+        assert!(second.is_err(), "there is one place");
+        let mut bytes = [0; 8];
+        let read =
+            std::future::poll_fn(|cx| std::pin::Pin::new(&mut first).poll_read(cx, &mut ReadBuf::new(&mut bytes)));
+        assert_eq!(read.await.unwrap_err().kind(), ErrorKind::TimedOut);
+        drop(first);
+        limited.accept().await;
+    });
+}
