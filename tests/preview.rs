@@ -24,7 +24,7 @@ struct Page {
 impl Page {
     fn new() -> Page {
         let (send, asks) = mpsc::channel();
-        let board = Arc::new(Board::new("run 1".into(), "a.scene".into(), send));
+        let board = Arc::new(Board::new("run 1".into(), "a.scene".into(), move |ask| send.send(ask).is_ok()));
         let server = serve(Arc::clone(&board), "127.0.0.1:0".parse().unwrap()).unwrap();
         Page { board, asks, server }
     }
@@ -352,7 +352,7 @@ fn parameters_are_asked_for() {
 #[test]
 fn a_taken_address_is_reported() {
     let page = Page::new();
-    let board = Arc::new(Board::new(String::new(), String::new(), mpsc::channel().0));
+    let board = Arc::new(Board::new(String::new(), String::new(), |_| false));
     assert!(serve(board, page.server.address()).is_err_and(|e| e.kind() == ErrorKind::AddrInUse));
 }
 
@@ -369,4 +369,28 @@ fn a_dropped_server_ends_and_its_address_is_free() {
     drop(idle);
     let again = serve(page.board, address).unwrap();
     assert_eq!(again.address(), address);
+}
+
+#[test]
+fn idle_connections_hold_their_places_for_a_while_only() {
+    use axum::serve::Listener;
+    use rtdsl::app::preview::listener::Limited;
+    use std::time::Duration;
+    use tokio::io::{AsyncRead, ReadBuf};
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let mut limited = Limited::new(listener, 1, Duration::from_millis(20));
+        let _clients = [(); 2].map(|()| std::net::TcpStream::connect(address).unwrap());
+        let (mut first, _) = limited.accept().await;
+        let second = tokio::time::timeout(Duration::from_millis(100), limited.accept()).await;
+        assert!(second.is_err(), "there is one place");
+        let mut bytes = [0; 8];
+        let read =
+            std::future::poll_fn(|cx| std::pin::Pin::new(&mut first).poll_read(cx, &mut ReadBuf::new(&mut bytes)));
+        assert_eq!(read.await.unwrap_err().kind(), ErrorKind::TimedOut);
+        drop(first);
+        limited.accept().await;
+    });
 }

@@ -4,7 +4,8 @@
 
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
@@ -182,6 +183,8 @@ fn what_is_the_same_is_not_rendered_again() {
     let watch = Watch::start(&p, &["a.scene"]);
     watch.next("picture");
     p.replace("a.scene", SCENE);
+    // Ten times as long as a change is held back: so that the two saves are two.
+    std::thread::sleep(Duration::from_millis(400));
     p.write("a.scene", &SCENE.replace("cc3322", "cc3323"));
     let second = watch.next("picture");
     assert_eq!(second["text"], 2, "the first save changed nothing");
@@ -201,18 +204,87 @@ fn polling_notices_too() {
 
 #[test]
 fn interrupted_in_the_middle_it_leaves_nothing_half_written() {
-    // About a minute of work.
-    let slow = SCENE.replace("[96, 64]", "[1920, 1080], aa: grid(8)").replace("matte(#cc3322)", "glass()");
+    // Many seconds of work, and few enough rays a pixel that only the small coarse picture comes before.
+    let slow = SCENE.replace("[96, 64]", "[1920, 1080], aa: grid(3)").replace("matte(#cc3322)", "glass()");
     let many = "for i in 0..40 { sphere(at: [i * 0.1 - 2, 0, 0], r: 0.5, mat: glass()) }\n";
     let p = Project::new(&[("a.scene", SCENE)]);
-    let watch = Watch::start(&p, &["a.scene"]);
+    let watch = Watch::start(&p, &["a.scene", "--serve", "127.0.0.1:0", "-o", "a.png"]);
     watch.next("picture");
     let good = fs::read(p.path("a.png")).unwrap();
     p.write("a.scene", &(slow + many));
-    std::thread::sleep(Duration::from_millis(500));
+    assert_eq!(watch.next("coarse")["text"], 2);
     assert_eq!(watch.stop(), Some(0));
     assert_eq!(fs::read(p.path("a.png")).unwrap(), good);
     assert_eq!(p.names(), ["a.png", "a.scene"]);
+}
+
+#[test]
+fn a_second_interruption_ends_it_whatever_it_is_doing() {
+    // A message that is longer than any pipe holds, and nobody reads it: it is stuck in writing it.
+    let name = "x".repeat(300_000);
+    let p = Project::new(&[("a.scene", &format!("{name}()\n"))]);
+    let mut child =
+        p.rtdsl(&["watch", "--json", "a.scene"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut first = [0];
+    child.stdout.as_mut().expect("its output").read_exact(&mut first).expect("it begins to write");
+    let start = Instant::now();
+    let code = loop {
+        // Again and again, since the system takes two that come at once for one.
+        let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        std::thread::sleep(Duration::from_millis(50));
+        if let Some(status) = child.try_wait().expect("it can be asked") {
+            break status.code();
+        }
+        assert!(killed.expect("`kill` runs").success());
+        if start.elapsed() > PATIENCE {
+            child.kill().expect("it ends");
+            panic!("it didn't end");
+        }
+    };
+    assert_eq!(code, Some(0));
+    assert_eq!(p.names(), ["a.scene"]);
+}
+
+#[test]
+fn a_picture_that_a_broken_text_interrupts_is_finished() {
+    let slow = SCENE.replace("[96, 64]", "[320, 240], aa: grid(4)");
+    let p = Project::new(&[("a.scene", SCENE), ("slow.scene", &slow)]);
+    let watch = Watch::start(&p, &["a.scene", "--serve", "127.0.0.1:0", "-o", "a.png"]);
+    watch.next("picture");
+    p.write("a.scene", &slow);
+    assert_eq!(watch.next("coarse")["text"], 2);
+    p.write("a.scene", &slow.replace("sphere", "sphree"));
+    assert_eq!(watch.next("picture")["text"], 2);
+    assert_eq!(watch.stop(), Some(0));
+    let picture = |name: &str| image::open(p.path(name)).expect("a picture").into_rgb8();
+    assert!(p.rtdsl(&["render", "slow.scene"]).status().expect("it runs").success());
+    assert!(picture("a.png") == picture("slow.png"));
+}
+
+#[test]
+fn what_a_page_set_goes_with_the_parameter() {
+    let p = Project::new(&[("a.scene", SCENE)]);
+    let watch = Watch::start(&p, &["a.scene", "--serve", "127.0.0.1:0"]);
+    let url = watch.next("serving")["url"].as_str().expect("an address").to_owned();
+    let host = url.trim_start_matches("http://").trim_end_matches('/');
+    watch.next("picture");
+    let body = r#"{"size":"2"}"#;
+    let head = format!("POST /set HTTP/1.1\r\nHost: {host}\r\nContent-Type: application/json\r\n");
+    let mut stream = TcpStream::connect(host).expect("it listens");
+    write!(stream, "{head}Connection: close\r\nContent-Length: {}\r\n\r\n{body}", body.len()).expect("sent");
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).expect("an answer");
+    assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
+    assert_eq!(watch.next("picture")["text"], 2);
+    p.write("a.scene", &SCENE.replace("param size: 1 in 0.1..=3\n", "").replace("r: size", "r: 1.5"));
+    loop {
+        let v = watch.said.recv_timeout(PATIENCE).expect("a picture");
+        assert_ne!(v["event"], "messages", "{v}");
+        if v["event"] == "picture" {
+            break assert_eq!(v["text"], 3);
+        }
+    }
+    assert_eq!(watch.stop(), Some(0));
 }
 
 #[test]

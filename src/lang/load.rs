@@ -82,6 +82,7 @@ impl<'m> Loader<'m> {
                 let name = path.display().to_string();
                 let unreadable = |e: &io::Error| Diagnostic::error(format!("can't read `{name}`: {}", reason(e)));
                 let full = path.canonicalize().map_err(|e| unreadable(&e))?;
+                self.files[file].found = true;
                 let bytes = read(&full, self.limits.file_bytes).map_err(|e| unreadable(&e))?;
                 let digest = self.was_read(file, &full, &bytes);
                 self.folder = full.parent().unwrap_or(Path::new("/")).to_owned();
@@ -209,7 +210,7 @@ impl<'m> Loader<'m> {
         if let Some(known) = self.files.iter().position(|f| f.path == path) {
             return known;
         }
-        self.files.push(Dependency { path, digest: None });
+        self.files.push(Dependency { path, digest: None, found: false });
         self.files.len() - 1
     }
 
@@ -239,6 +240,7 @@ impl<'m> Loader<'m> {
             };
             d.note("a path starts at the folder of the file that names it")
         })?;
+        self.files[file].found = true;
         if !self.allowed.iter().any(|root| full.starts_with(root)) {
             return Err(Diagnostic::error(format!("`{written}` is outside the project"))
                 .at(span, "")

@@ -73,8 +73,10 @@ pub struct Failure {
 pub struct Dependency {
     /// Its path as the text named it, in the folder of the file that named it; links not followed.
     pub path: PathBuf,
-    /// BLAKE3 of the bytes that were read; `None` where there was nothing to read.
+    /// BLAKE3 of the bytes that were read; `None` where none were.
     pub digest: Option<[u8; 32]>,
+    /// Whether something was there, read or not: it may be too large, or not allowed.
+    pub found: bool,
 }
 
 /// A declared parameter.

@@ -6,7 +6,6 @@ use crate::lang::{Evaluated, Param};
 use crate::render::{Options, Probe, World, probe};
 use crate::scene::Color;
 use serde::Serialize;
-use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 
@@ -158,8 +157,11 @@ impl Shown {
 pub struct Board {
     posted: watch::Sender<Arc<Posted>>,
     kept: Mutex<Kept>,
-    asks: Mutex<Sender<Ask>>,
+    hand_on: HandOn,
 }
+
+/// Takes what a page asks for; whether anyone listens.
+type HandOn = Box<dyn Fn(Ask) -> bool + Send + Sync>;
 
 #[derive(Default)]
 struct Kept {
@@ -173,13 +175,13 @@ struct Kept {
 const PICTURES_KEPT: usize = 8;
 
 impl Board {
-    /// An empty board; what pages ask for goes to `asks`.
-    pub fn new(run: String, file: String, asks: Sender<Ask>) -> Board {
+    /// An empty board; what pages ask for goes to `hand_on`, which tells whether anyone listens.
+    pub fn new(run: String, file: String, hand_on: impl Fn(Ask) -> bool + Send + Sync + 'static) -> Board {
         let posted = Posted { run, file, ..Posted::default() };
         Board {
             posted: watch::Sender::new(Arc::new(posted)),
             kept: Mutex::new(Kept { next: 1, ..Kept::default() }),
-            asks: Mutex::new(asks),
+            hand_on: Box::new(hand_on),
         }
     }
 
@@ -235,7 +237,7 @@ impl Board {
 
     /// Hands what a page asks for to the watching loop; whether it still runs.
     pub fn ask(&self, ask: Ask) -> bool {
-        self.asks.lock().unwrap_or_else(PoisonError::into_inner).send(ask).is_ok()
+        (self.hand_on)(ask)
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {

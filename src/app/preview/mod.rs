@@ -5,6 +5,7 @@
 mod asset;
 pub mod board;
 mod guard;
+pub mod listener;
 mod route;
 pub mod server;
 

@@ -2,12 +2,21 @@
 //! either.
 
 use super::board::Board;
+use super::listener::Limited;
 use super::{guard, route};
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 use tokio::sync::oneshot;
+
+/// Most connections at once: a browser holds six at most, so this is ten of them; systems allow 256 files at least.
+const MOST_CONNECTIONS: usize = 64;
+
+/// After so long a connection over which nothing goes is closed: twice the 15 s after which a page that follows gets a sign
+/// of life.
+const IDLE: Duration = Duration::from_secs(30);
 
 /// A running server. Dropped, it ends, and every connection with it.
 pub struct Server {
@@ -27,7 +36,7 @@ pub fn serve(board: Arc<Board>, address: SocketAddr) -> io::Result<Server> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let listener = {
         let _inside = runtime.enter();
-        tokio::net::TcpListener::from_std(listener)?
+        Limited::new(tokio::net::TcpListener::from_std(listener)?, MOST_CONNECTIONS, IDLE)
     };
     let (stop, stopped) = oneshot::channel();
     let routes = route::routes(board, bound);

@@ -122,6 +122,11 @@ impl Leash {
         }
     }
 
+    /// Whether the painter shall stop.
+    pub fn is_pulled(&self) -> bool {
+        self.cancel.load(SeqCst)
+    }
+
     /// How long ago it was told to stop; `None` where it wasn't.
     pub fn since_cancelled(&self) -> Option<Duration> {
         let at = *self.cancelled_at.lock().unwrap_or_else(PoisonError::into_inner);

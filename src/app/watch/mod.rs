@@ -6,7 +6,9 @@
 
 pub mod canvas;
 pub mod desk;
+pub mod encoder;
 pub mod follower;
+pub mod interrupt;
 pub mod painter;
 pub mod show;
 pub mod teller;
@@ -20,6 +22,7 @@ use crate::diag::Diagnostic;
 use crate::film::{Format, OutputFile};
 use desk::{Desk, Order, Urgency};
 use follower::Follower;
+use interrupt::{AtEnd, Unwhole};
 use painter::Painter;
 use show::Show;
 use std::io;
@@ -35,7 +38,7 @@ enum News {
     Files(Vec<PathBuf>),
     /// A page asks for something.
     Asked(Ask),
-    /// The user wants to stop.
+    /// The user wants to stop, or the painter can't go on.
     Stop,
 }
 
@@ -51,7 +54,12 @@ pub fn run(args: &WatchArgs) -> Result<Exit, Stop> {
     let output = output(args, address.is_some())?;
     let teller = Teller { json: args.json };
     let (news, waiting) = channel();
-    stop_on_interrupt(news.clone())?;
+    let unwhole = Unwhole::default();
+    let to_end = news.clone();
+    // Where it can't be sent, the loop has ended.
+    let stop = move || drop(to_end.send(News::Stop));
+    ctrlc::set_handler(interrupt::handler(stop.clone(), unwhole.clone()))
+        .map_err(|e| Stop::system("interruptions can't be noticed", io::Error::other(e)))?;
     let told = news.clone();
     // Whether anyone still listens shows in the loop, not here.
     let follower = Follower::new(args.poll, move |paths| drop(told.send(News::Files(paths))))
@@ -74,9 +82,13 @@ pub fn run(args: &WatchArgs) -> Result<Exit, Stop> {
     };
     let desk = Desk::default();
     std::thread::scope(|scope| {
-        let painter = Painter::new(args, output, &follower, Show::new(board.clone()), teller);
-        scope.spawn(|| painter.work(&desk));
-        watch(args, &desk, &waiting);
+        let painter = Painter::new(args, output, unwhole, &follower, Show::new(board.clone()), teller);
+        let desk = &desk;
+        scope.spawn(move || {
+            let _at_end = AtEnd(stop); // also where it panics, which then comes out of this scope
+            painter.work(desk);
+        });
+        watch(args, desk, &waiting);
         desk.close();
     });
     Ok(Exit::Done)
@@ -139,23 +151,9 @@ fn output(args: &WatchArgs, is_served: bool) -> Result<Option<(PathBuf, Format)>
 }
 
 fn board(args: &WatchArgs, news: Sender<News>) -> Board {
-    let (asks, asked) = channel();
-    std::thread::spawn(move || {
-        while let Ok(ask) = asked.recv()
-            && news.send(News::Asked(ask)).is_ok()
-        {}
-    });
     // The moment of the start tells one run from another.
     let run = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-    Board::new(format!("{:x}", run.as_nanos()), shown_name(&args.scene.file), asks)
-}
-
-/// The first interruption ends the loop in good order; a second one ends the program.
-fn stop_on_interrupt(news: Sender<News>) -> Result<(), Stop> {
-    let handler = move || {
-        if news.send(News::Stop).is_err() {
-            std::process::exit(Exit::Done as i32);
-        }
-    };
-    ctrlc::set_handler(handler).map_err(|e| Stop::system("interruptions can't be noticed", io::Error::other(e)))
+    Board::new(format!("{:x}", run.as_nanos()), shown_name(&args.scene.file), move |ask| {
+        news.send(News::Asked(ask)).is_ok()
+    })
 }

@@ -2,7 +2,9 @@
 
 use super::canvas::{Canvas, enlarged};
 use super::desk::{Desk, Leash, Order};
+use super::encoder::{encode, hand_on};
 use super::follower::{Follower, Means};
+use super::interrupt::Unwhole;
 use super::show::{Coarse, Show};
 use super::teller::{Finished, Teller};
 use crate::app::Stop;
@@ -10,11 +12,10 @@ use crate::app::args::WatchArgs;
 use crate::app::picture::{fits, look, recipe_of};
 use crate::app::progress::Bar;
 use crate::app::render::target;
-use crate::film::{self, Depth, Film, Format, Recipe};
+use crate::film::{Depth, Film, Format, Recipe};
 use crate::lang::{self, Dependency, Evaluated, Failure, Input, Memory, Request};
 use crate::render::{Built, Options, Plan, Retraced, Retracer};
 use crate::scene::Camera;
-use std::io::{self, Cursor, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -24,6 +25,7 @@ pub struct Painter<'w> {
     args: &'w WatchArgs,
     /// Where finished pictures go, and in what form.
     output: Option<(PathBuf, Format)>,
+    unwhole: Unwhole,
     follower: &'w Follower,
     show: Show,
     teller: Teller,
@@ -57,6 +59,7 @@ impl<'w> Painter<'w> {
     pub fn new(
         args: &'w WatchArgs,
         output: Option<(PathBuf, Format)>,
+        unwhole: Unwhole,
         follower: &'w Follower,
         show: Show,
         teller: Teller,
@@ -64,6 +67,7 @@ impl<'w> Painter<'w> {
         Painter {
             args,
             output,
+            unwhole,
             follower,
             show,
             teller,
@@ -217,13 +221,17 @@ impl<'w> Painter<'w> {
         let render_seconds = render_start.elapsed().as_secs_f64();
 
         let recipe = recipe_of(&s.evaluated, &s.options, &s.camera);
-        let shown = self.show.is_on().then(|| png(&film, &recipe)).transpose().map_err(Stop::from)?;
+        let png = Format::Png(Depth::Eight);
+        let shown = match self.show.is_on() {
+            true => Some(encode(&film, png, &recipe, leash).ok_or(None)?.map_err(Stop::from)?),
+            false => None,
+        };
         let bytes = shown.as_ref().map_or(0, Vec::len);
         if let Some(file) = &shown {
             self.show.finished(file, (s.text, &s.evaluated, &world, &s.options));
             leash.shown();
         }
-        let out = self.write(&film, &recipe, s, shown)?;
+        let out = self.write(&film, &recipe, s, shown, leash)?;
         let e = &s.evaluated;
         let all = rays.camera + rays.shadow + rays.reflected + rays.transmitted;
         let finished = Finished {
@@ -263,23 +271,32 @@ impl<'w> Painter<'w> {
         traced
     }
 
-    /// Writes the picture's file; how messages name it. `png` is the very file, if it has been made in memory.
-    fn write(&self, film: &Film, recipe: &Recipe, s: &Sketch, png: Option<Vec<u8>>) -> Result<Option<String>, Stop> {
+    /// Writes the picture's file; how messages name it, and `Err(None)` where it was told to stop. `png` is the picture as a
+    /// PNG of 8 bits, if it has been made.
+    fn write(
+        &self,
+        film: &Arc<Film>,
+        recipe: &Recipe,
+        s: &Sketch,
+        png: Option<Vec<u8>>,
+        leash: &Arc<Leash>,
+    ) -> Result<Option<String>, Option<Stop>> {
         let Some((path, format)) = &self.output else { return Ok(None) };
         let name = path.display().to_string();
-        target(path, &s.evaluated)?
-            .write(|out| match (&png, format) {
-                (Some(file), Format::Png(Depth::Eight)) => out.write_all(file),
-                _ => film::encode(film, *format, recipe, out),
-            })
-            .map_err(|e| Stop::system(format!("`{name}` can't be written"), e))?;
-        Ok(Some(name))
+        let fault = |e| Some(Stop::system(format!("`{name}` can't be written"), e));
+        let file = match (png, format) {
+            (Some(file), Format::Png(Depth::Eight)) => file,
+            _ => encode(film, *format, recipe, leash).ok_or(None)?.map_err(fault)?,
+        };
+        let written = target(path, &s.evaluated)?.write(|out| {
+            self.unwhole.set(Some(out.get_ref().path()));
+            hand_on(&file, out, leash)
+        });
+        self.unwhole.set(None);
+        match written {
+            Ok(()) => Ok(Some(name)),
+            Err(_) if leash.is_pulled() => Err(None),
+            Err(e) => Err(fault(e)),
+        }
     }
-}
-
-/// A picture's file in memory, as pages show it.
-fn png(film: &Film, recipe: &Recipe) -> io::Result<Vec<u8>> {
-    let mut file = Cursor::new(Vec::new());
-    film::encode(film, Format::Png(Depth::Eight), recipe, &mut file)?;
-    Ok(file.into_inner())
 }

@@ -3,9 +3,10 @@
 
 use super::canvas::Canvas;
 use super::desk::Leash;
+use super::encoder::encode;
 use super::teller::{Finished, time_of_day};
 use crate::app::preview::board::{Message, Report};
-use crate::app::preview::{Board, Level, Picture, Shown};
+use crate::app::preview::{Board, Level, Picture, Posted, Shown};
 use crate::diag::{self, Diagnostic, Look, Severity, Sources};
 use crate::film::{self, Depth, Film, Format, Recipe};
 use crate::lang::Evaluated;
@@ -24,10 +25,13 @@ pub struct Show {
 /// What came of the wish to see something soon.
 pub enum Coarse {
     /// A coarse picture.
-    Shown(Film),
+    Shown(Arc<Film>),
     /// Nobody is looking, or the whole picture will be there as soon.
     NotNeeded,
 }
+
+/// The form of pictures on pages.
+const PNG: Format = Format::Png(Depth::Eight);
 
 /// Pixels of a coarse picture's side stand for so many of the full one's: it costs a sixteenth.
 const COARSE: u32 = 4;
@@ -75,7 +79,7 @@ impl Show {
     }
 
     /// Shows a coarse picture, where that is sooner than the final one.
-    pub fn coarse(&self, world: &World, text: u64, options: &Options, plan: &Plan, leash: &Leash) -> Coarse {
+    pub fn coarse(&self, world: &World, text: u64, options: &Options, plan: &Plan, leash: &Arc<Leash>) -> Coarse {
         // Where few tiles are traced anew, the picture before with those in it is there as soon.
         if !self.is_on() || plan.traced() * FEW < plan.tiles() {
             return Coarse::NotNeeded;
@@ -87,9 +91,11 @@ impl Show {
         let mut last = None;
         for step in steps.into_iter().flatten() {
             let Some(rendered) = render(world, &step, &Silent, leash.cancel()) else { break };
-            self.picture(&rendered.film, Level::Coarse, (width, height), text);
-            leash.shown();
-            last = Some(rendered.film);
+            let film = Arc::new(rendered.film);
+            // Into memory it can't fail: a film has pixels.
+            let Some(Ok(file)) = encode(&film, PNG, &Recipe::new(), leash) else { break };
+            self.picture(file, Level::Coarse, (width, height), text, 0.0, leash);
+            last = Some(film);
         }
         last.map_or(Coarse::NotNeeded, Coarse::Shown)
     }
@@ -117,9 +123,11 @@ impl Show {
                 let start = Instant::now();
                 let Some(film) = film.get_or_insert_with(|| before.take().map(|b| b())) else { return };
                 canvas.copy_to(film);
-                show.post(|p| p.progress = canvas.progress());
-                show.picture(film, Level::Partial, (film.width, film.height), text);
-                leash.shown();
+                let mut file = Cursor::new(Vec::new());
+                if film::encode(film, PNG, &Recipe::new(), &mut file).is_ok() {
+                    let size = (film.width, film.height);
+                    show.picture(file.into_inner(), Level::Partial, size, text, canvas.progress(), &leash);
+                }
                 // A tenth of one core at most, however large the picture.
                 pause = PARTIAL_EVERY.max(start.elapsed() * 10);
             }
@@ -132,8 +140,10 @@ impl Show {
         let id = board.keep_picture(file.to_vec());
         let shown = Shown { picture: id, evaluated: Arc::clone(e), world: Arc::clone(world), options: options.clone() };
         board.show(shown);
-        self.put(id, Level::Final, (options.width, options.height), text);
-        self.post(|p| (p.busy, p.progress) = (p.text != text && p.messages.is_empty(), 1.0));
+        self.post(|p| {
+            put(p, id, Level::Final, (options.width, options.height), text, 1.0);
+            p.busy = p.text != text && p.messages.is_empty();
+        });
     }
 
     /// What it took.
@@ -142,35 +152,38 @@ impl Show {
         self.post(|p| p.report = Some(Report { parse, evaluate, world, render, rays, tiles, bytes }));
     }
 
-    fn picture(&self, film: &Film, level: Level, size: (u32, u32), text: u64) {
+    /// Shows a picture that isn't the last of its text, unless a newer text is known.
+    fn picture(&self, file: Vec<u8>, level: Level, size: (u32, u32), text: u64, progress: f64, leash: &Leash) {
         let Some(board) = &self.board else { return };
-        let mut file = Cursor::new(Vec::new());
-        // Into memory it can't fail: a film has pixels.
-        if film::encode(film, Format::Png(Depth::Eight), &Recipe::new(), &mut file).is_ok() {
-            let id = board.keep_picture(file.into_inner());
-            self.put(id, level, size, text);
-        }
-    }
-
-    fn put(&self, id: u64, level: Level, (width, height): (u32, u32), text: u64) {
+        let id = board.keep_picture(file);
         self.post(|p| {
-            if let Some(old) = &p.picture {
-                if old.text > text || (old.text == text && old.level == Level::Final) {
-                    return; // too late
-                }
-                if old.level == Level::Final && old.text < text {
-                    p.previous = Some(old.clone());
-                }
+            // Asked in here: what a newer text posts comes after its order, and so after the pull.
+            if !leash.is_pulled() {
+                put(p, id, level, size, text, progress);
             }
-            p.picture = Some(Picture { id, level, width, height, text, made: time_of_day() });
         });
+        leash.shown();
     }
 
-    fn post(&self, change: impl FnOnce(&mut crate::app::preview::Posted)) {
+    fn post(&self, change: impl FnOnce(&mut Posted)) {
         if let Some(board) = &self.board {
             board.post(change);
         }
     }
+}
+
+/// Puts a picture on show, and how much of its text's last one is finished, unless that is there already.
+fn put(p: &mut Posted, id: u64, level: Level, (width, height): (u32, u32), text: u64, progress: f64) {
+    if let Some(old) = &p.picture {
+        if old.text > text || (old.text == text && old.level == Level::Final && level != Level::Final) {
+            return; // too late
+        }
+        if old.level == Level::Final && old.text < text {
+            p.previous = Some(old.clone());
+        }
+    }
+    p.picture = Some(Picture { id, level, width, height, text, made: time_of_day() });
+    p.progress = progress;
 }
 
 fn messages(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Message> {
@@ -200,6 +213,20 @@ fn set_line(set: &[(String, String)]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_comes_too_late_changes_nothing() {
+        let mut p = Posted::default();
+        put(&mut p, 1, Level::Coarse, (8, 8), 1, 0.0);
+        put(&mut p, 2, Level::Final, (8, 8), 1, 1.0);
+        put(&mut p, 3, Level::Partial, (8, 8), 1, 0.5);
+        assert_eq!((p.picture.as_ref().map(|p| p.id), p.progress), (Some(2), 1.0));
+        // Finished again, since its file couldn't be written before: pages must know of the one that can be asked about.
+        put(&mut p, 4, Level::Final, (8, 8), 1, 1.0);
+        put(&mut p, 5, Level::Coarse, (8, 8), 2, 0.0);
+        put(&mut p, 6, Level::Final, (8, 8), 1, 1.0);
+        assert_eq!((p.picture.map(|p| p.id), p.previous.map(|p| p.id), p.progress), (Some(5), Some(4), 0.0));
+    }
 
     #[test]
     fn set_lines_survive_a_shell() {

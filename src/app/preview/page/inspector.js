@@ -111,9 +111,8 @@ export class Inspector {
       return;
     }
     list.append(element("dd", "what", sight.what));
-    // Place and text, parted by two spaces, on lines of their own.
-    row("made at", [...sight.made_at.split("  "), ...sight.calls]);
-    row("material", sight.material.split("  "));
+    row("made at", [...placeAndText(sight.made_at), ...sight.calls]);
+    row("material", placeAndText(sight.material));
     row("distance", sight.distance);
     row("lights", sight.lights.length ? sight.lights : "none in the scene");
     row("color", sight.color);
@@ -124,6 +123,11 @@ export class Inspector {
   #part(selector) {
     return this.#root.querySelector(selector);
   }
+}
+
+/** Place and text, to be shown on lines of their own: parted by two spaces, of which the text may have more. */
+function placeAndText(made) {
+  return made.match(/^(.*?:\d+:\d+) {2}(.*)$/s)?.slice(1) ?? [made];
 }
 
 function element(tag, className, text) {

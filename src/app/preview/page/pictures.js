@@ -1,5 +1,11 @@
 // The pictures: fetched and decoded before they are shown, so that nothing flickers and nothing is ever blank.
 
+/** How long after a picture couldn't be fetched it is tried again, in milliseconds: a hiccup is over by then. */
+const RETRY = 1000;
+
+/** The longest such pause; it doubles each time. */
+const LONGEST_RETRY = 30_000;
+
 /**
  * Holds the picture on show and, when it is wanted, the one before it. One is fetched at a time, and always the newest.
  * An entry is `{ key, info, bitmap, blob }`, where `info` is the picture as it was posted.
@@ -13,6 +19,8 @@ export class Pictures {
   #posted = null;
   #wantBefore = false;
   #busy = false;
+  #retry = null;
+  #pause = RETRY;
   #onChange;
 
   /** `onChange` is called when either entry has changed. */
@@ -23,6 +31,7 @@ export class Pictures {
   /** Shows what `posted` names. */
   show(posted) {
     this.#posted = posted;
+    this.#pause = RETRY;
     this.#catchUp();
   }
 
@@ -35,10 +44,14 @@ export class Pictures {
   async #catchUp() {
     if (this.#busy) return;
     this.#busy = true;
-    for (let task = this.#next(); task; task = this.#next()) {
-      if (!(await task())) break;
-    }
+    clearTimeout(this.#retry);
+    let done = true;
+    for (let task = this.#next(); task && done; task = this.#next()) done = await task();
     this.#busy = false;
+    if (done) return;
+    // It is still the newest: nothing else would ask for it again.
+    this.#retry = setTimeout(() => this.#catchUp(), this.#pause);
+    this.#pause = Math.min(2 * this.#pause, LONGEST_RETRY);
   }
 
   /** What is to be done next: a function that tells whether it could be done. */
@@ -87,9 +100,9 @@ export class Pictures {
       blob = await response.blob();
       bitmap = await createImageBitmap(blob);
     } catch {
-      // The server is gone; what it posts when it is back comes anew.
       return this.#isPast(run, info);
     }
+    this.#pause = RETRY;
     put({ key: key(run, info), info, bitmap, blob });
     this.#onChange();
     return true;

@@ -133,6 +133,7 @@ function say(text) {
   part("#live").textContent = text;
 }
 
+/** About three digits, as many as stay the same from one run to the next; milliseconds get by with fewer, for the eye. */
 function duration(seconds) {
   if (seconds < 0.01) return `${(seconds * 1e3).toFixed(1)} ms`;
   if (seconds < 1) return `${Math.round(seconds * 1e3)} ms`;
@@ -140,12 +141,14 @@ function duration(seconds) {
   return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
 }
 
+/** Two digits at least: whether it doubled shows. */
 function many(n) {
   const [unit, by] = n >= 1e9 ? [" G", 1e9] : n >= 1e6 ? [" M", 1e6] : n >= 1e3 ? [" k", 1e3] : ["", 1];
   const scaled = n / by;
   return `${scaled < 10 && by > 1 ? scaled.toFixed(1) : Math.round(scaled)}${unit}`;
 }
 
+/** Up to a megabyte whole kilobytes, none being 0; then a tenth of a megabyte, as file managers show it. */
 function bytes(n) {
   return n < 1e6 ? `${Math.ceil(n / 1e3)} kB` : `${(n / 1e6).toFixed(1)} MB`;
 }

@@ -1,6 +1,7 @@
 // Values of parameters on their way: between the text of the language and what controls show, and to the server.
 
-/** Slider positions: fine enough for the eye, coarse enough for short numbers. */
+/** Least positions of a slider are half of these: twice the pixels of its track, so that the mouse reaches no fewer values than
+ * it has places, and yet no digits that it couldn't set. */
 const POSITIONS = 500;
 
 /** Digits of a number that a person would write. */

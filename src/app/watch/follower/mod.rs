@@ -143,6 +143,8 @@ struct Followed {
     dependency: Dependency,
     /// What whoever asked for it takes it to hold: what was read or, later, what was told.
     taken: Content,
+    /// It was there but wasn't read, for a reason that its content wouldn't change: taken as it is at first sight.
+    unseen: bool,
     found: Option<Fingerprint>,
 }
 
@@ -183,8 +185,13 @@ impl Looker {
         for dependency in files {
             let file = match before.remove(&dependency.path) {
                 // Nothing was read since; what was told stays told.
-                Some(known) if known.dependency.digest == dependency.digest => known,
-                known => Followed { taken: dependency.digest, dependency, found: known.and_then(|k| k.found) },
+                Some(known) if known.dependency == dependency => known,
+                known => Followed {
+                    taken: dependency.digest,
+                    unseen: dependency.found && dependency.digest.is_none(),
+                    found: known.and_then(|k| k.found),
+                    dependency,
+                },
             };
             self.files.push(file);
         }
@@ -218,9 +225,10 @@ impl Looker {
         }
         let mut torn = false;
         for i in open {
-            let found = Fingerprint::read(&self.files[i].dependency.path, fresh);
+            let file = &mut self.files[i];
+            let found = Fingerprint::read(&file.dependency.path, fresh, file.found.as_ref());
             torn |= found.torn;
-            self.files[i].found = Some(found);
+            file.found = Some(found);
         }
         if torn && !overdue {
             change.last = now;
@@ -241,8 +249,11 @@ impl Looker {
                 && found.content != file.taken
             {
                 file.taken = found.content;
-                paths.push(file.dependency.path.clone());
+                if !file.unseen {
+                    paths.push(file.dependency.path.clone());
+                }
             }
+            file.unseen &= file.found.is_none();
         }
         if !paths.is_empty() {
             (self.changed)(paths);

@@ -160,6 +160,6 @@ fn relative_paths_are_those_of_the_current_folder() {
     let (tell, told) = mpsc::channel();
     let follower = Follower::start(None, NEVER, notice::system, Box::new(move |paths| drop(tell.send(paths)))).unwrap();
     let path = PathBuf::from("src/../Cargo.toml");
-    follower.follow(&[Dependency { path: path.clone(), digest: None }]);
+    follower.follow(&[Dependency { path: path.clone(), digest: None, found: false }]);
     assert_eq!(told.recv_timeout(PATIENCE), Ok(vec![path]));
 }

@@ -102,5 +102,5 @@ impl Desk {
 /// What the language says of a file that it reads now.
 fn dependency(path: &Path) -> Dependency {
     let digest = fs::read(path).ok().map(|bytes| *blake3::hash(&bytes).as_bytes());
-    Dependency { path: path.to_path_buf(), digest }
+    Dependency { path: path.to_path_buf(), digest, found: digest.is_some() }
 }

@@ -18,7 +18,7 @@ fn an_old_text_read_late_is_told_of() {
     desk.write("a", "new");
     desk.follow(&["a"]);
     // The file stands still and is known; yet whoever says so read something else of it.
-    let half = Dependency { path: desk.path("a"), digest: Some(*blake3::hash(b"half").as_bytes()) };
+    let half = Dependency { path: desk.path("a"), digest: Some(*blake3::hash(b"half").as_bytes()), found: true };
     desk.follower.follow(&[half]);
     desk.changed("a");
 }
@@ -35,6 +35,31 @@ fn the_same_content_is_no_change() {
     desk.write("copy", "text");
     desk.rename("copy", "a");
     desk.only_sentinel();
+}
+
+#[test]
+fn what_was_there_but_not_read_is_told_of_when_it_changes() {
+    let desk = Desk::new();
+    desk.write("a", "too large, or outside the project");
+    let unread = [Dependency { path: desk.path("a"), digest: None, found: true }, dependency(&desk.path("sentinel"))];
+    for text in ["1", "2"] {
+        desk.follower.follow(&unread[..]);
+        desk.write("sentinel", text);
+        assert_eq!(
+            desk.told.recv_timeout(PATIENCE),
+            Ok(vec![desk.path("sentinel")]),
+            "not of what it is at first sight"
+        );
+    }
+    desk.write("a", "another");
+    assert_eq!(desk.told.recv_timeout(PATIENCE), Ok(vec![desk.path("a")]));
+    fs::remove_file(desk.path("a")).unwrap();
+    assert_eq!(desk.told.recv_timeout(PATIENCE), Ok(vec![desk.path("a")]));
+    // What was missing when it was looked for is told of however early it came.
+    desk.write("a", "there now");
+    let missing = Dependency { path: desk.path("a"), digest: None, found: false };
+    desk.follower.follow(&[missing]);
+    assert_eq!(desk.told.recv_timeout(PATIENCE), Ok(vec![desk.path("a")]));
 }
 
 #[test]
@@ -95,7 +120,7 @@ fn files_are_told_in_the_order_they_were_given() {
         desk.write(name, "new");
     }
     let old = Some(*blake3::hash(b"old").as_bytes());
-    let files = ["c", "a", "b"].map(|n| Dependency { path: desk.path(n), digest: old });
+    let files = ["c", "a", "b"].map(|n| Dependency { path: desk.path(n), digest: old, found: true });
     desk.follower.follow(&files);
     assert_eq!(desk.report(), ["c", "a", "b"]);
 }
