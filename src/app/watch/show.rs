@@ -7,6 +7,7 @@ use super::encoder::encode;
 use super::teller::{Finished, time_of_day};
 use crate::app::preview::board::{Message, Report};
 use crate::app::preview::{Board, Level, Picture, Posted, Shown};
+use crate::app::words;
 use crate::diag::{self, Diagnostic, Look, Severity, Sources};
 use crate::film::{self, Depth, Film, Format, Recipe};
 use crate::lang::Evaluated;
@@ -198,15 +199,7 @@ fn messages(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Message> {
 
 /// The `--set` arguments for a shell.
 fn set_line(set: &[(String, String)]) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_-.,:/+%@=".contains(c);
-    let one = |(name, value): &(String, String)| {
-        let text = format!("{name}={value}");
-        let quoted = match text.chars().all(plain) {
-            true => text,
-            false => format!("'{}'", text.replace('\'', r"'\''")),
-        };
-        format!("--set {quoted}")
-    };
+    let one = |(name, value): &(String, String)| format!("--set {}", words::quoted(&format!("{name}={value}")));
     set.iter().map(one).collect::<Vec<_>>().join(" ")
 }
 

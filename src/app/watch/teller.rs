@@ -2,6 +2,7 @@
 //! line.
 
 use crate::app::stop::print_diagnostics;
+use crate::app::words;
 use crate::diag::{Diagnostic, Report, Sources};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -21,7 +22,6 @@ pub struct Finished {
     /// Number of the text that it shows.
     pub text: u64,
     /// Why it was made, in words.
-    #[serde(skip)]
     pub why: String,
     /// Seconds parsing.
     pub parse: f64,
@@ -90,7 +90,7 @@ impl Teller {
         self.line(&format!(
             "{}: parse {parse}, evaluate {evaluate}, render {render}, {} rays{tiles}, {w}x{h}{out}",
             f.why,
-            grouped(f.rays)
+            words::thousands(f.rays)
         ));
     }
 
@@ -135,26 +135,12 @@ pub fn time_of_day() -> String {
     jiff::Zoned::now().strftime("%H:%M:%S").to_string()
 }
 
-/// `1,234,567`.
-fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut out = String::new();
-    for (i, d) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(d);
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_and_times() {
-        assert_eq!([0, 999, 1000, 1234567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
+    fn times() {
         let time = time_of_day();
         assert!(time.len() == 8 && time.split(':').all(|p| p.parse::<u8>().is_ok_and(|n| n < 60)), "{time}");
     }
