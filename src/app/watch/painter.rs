@@ -231,7 +231,14 @@ impl<'w> Painter<'w> {
             self.show.finished(file, (s.text, &s.evaluated, &world, &s.options));
             leash.shown();
         }
-        let out = self.write(&film, &recipe, s, shown, leash)?;
+        let out = match self.write(&film, &recipe, s, shown, leash) {
+            // The picture is made, only its file isn't.
+            Err(Some(stop)) => {
+                self.teller.messages(s.text, stop.diagnostics(), stop.sources());
+                None
+            }
+            other => other?,
+        };
         let e = &s.evaluated;
         let all = rays.camera + rays.shadow + rays.reflected + rays.transmitted;
         let finished = Finished {
