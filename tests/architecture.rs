@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders of `src` from the ground up. A file imports from lower floors; `lang` and `render` share one and never meet.
-const FLOORS: [(&str, u32); 7] =
-    [("math", 0), ("diag", 0), ("scene", 1), ("film", 1), ("lang", 2), ("render", 2), ("app", 3)];
+const FLOORS: [(&str, u32); 8] =
+    [("math", 0), ("diag", 0), ("scene", 1), ("film", 1), ("lang", 2), ("render", 2), ("verify", 3), ("app", 4)];
 
 /// Folders of one floor that may be used all the same: pictures are developed with the scene's colour formulas.
 const SAME_FLOOR: [(&str, &str); 1] = [("film", "scene")];
