@@ -6,9 +6,12 @@ pub mod dd;
 pub mod float;
 pub mod fun;
 pub mod hash;
+pub mod interval;
 pub mod noise;
 pub mod real;
+pub mod tri;
 
 pub use affine::Affine;
 pub use dd::Dd;
+pub use interval::Interval;
 pub use real::{Elem, Lane, Mask, Real, Single};

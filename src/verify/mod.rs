@@ -4,6 +4,7 @@
 //! each beside the bound that it must keep. `cargo test` runs all of them in [`Size::Quick`], `rtdsl verify --extremes` in
 //! [`Size::Long`].
 
+pub mod enclosure;
 mod histogram;
 mod outcome;
 

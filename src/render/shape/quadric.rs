@@ -67,8 +67,8 @@ pub struct Roots<R: Real> {
 }
 
 /// In units of roundoff, relative to what it was computed from: a discriminant below this is evaluated again in
-/// double-double. Its own error is below 16 of them; up to 2^12, where the roots would lose half of their digits' worth of
-/// the gap between them, costs no more than one ray in 2^40.
+/// double-double. Its own error is below 16 of them. Up to 2^12 its relative error, which half of goes into the roots' distance,
+/// is worth removing, too: no more than one ray in 2^40 comes so near to a tangent.
 const DOUBT: f64 = 4096.0;
 
 /// Solves for the crossings of `ray`'s line with `form` = 0, `nearest` being its point nearest to the frame's origin. Of rays
