@@ -4,9 +4,18 @@
 //! each beside the bound that it must keep. `cargo test` runs all of them in [`Size::Quick`], `rtdsl verify --extremes` in
 //! [`Size::Long`].
 
+pub mod contact;
+mod draw;
 pub mod enclosure;
 mod histogram;
 mod outcome;
+pub mod quadric;
+pub mod respawn;
+mod specimen;
+mod tally;
+pub mod tangent;
+pub mod torus;
+pub mod watertight;
 
 pub use histogram::Histogram;
 pub use outcome::{Bound, Figure, Outcome};
