@@ -11,7 +11,7 @@ mod histogram;
 mod outcome;
 pub mod quadric;
 pub mod respawn;
-mod specimen;
+pub mod specimen;
 mod tally;
 pub mod tangent;
 pub mod torus;
