@@ -38,7 +38,8 @@
 //! | 1 | [`film`] | linear picture, display codes, file formats, atomic files; may use `scene`'s colours |
 //! | 2 | [`lang`] | grammar, evaluation, vocabulary: text to scene |
 //! | 2 | [`render`] | world, rays, shapes, materials, integrator, tiles: scene to film |
-//! | 3 | [`app`] | one file or folder a command: arguments, exit codes, everything that prints, watches or serves |
+//! | 3 | [`verify`] | laws that pictures must obey, checked by rendering; knows nothing of the language |
+//! | 4 | [`app`] | one file or folder a command: arguments, exit codes, everything that prints, watches or serves |
 //!
 //! # Rules that hold everywhere
 //!
@@ -67,3 +68,4 @@ pub mod lang;
 pub mod math;
 pub mod render;
 pub mod scene;
+pub mod verify;
