@@ -4,16 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders of `src` from the ground up. A file imports from lower floors; `lang` and `render` share one and never meet.
-const FLOORS: [(&str, u32); 8] = [
-    ("math", 0),
-    ("diag", 0),
-    ("scene", 1),
-    ("film", 1),
-    ("lang", 2),
-    ("render", 2),
-    ("verify", 3),
-    ("app", 4),
-];
+const FLOORS: [(&str, u32); 8] =
+    [("math", 0), ("diag", 0), ("scene", 1), ("film", 1), ("lang", 2), ("render", 2), ("verify", 3), ("app", 4)];
 
 /// Folders that a folder doesn't know although they lie below it: what is verified are scenes, whoever made them.
 const UNKNOWN: [(&str, &str); 1] = [("verify", "lang")];

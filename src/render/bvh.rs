@@ -3,7 +3,7 @@
 //! Binary, built top-down by the surface area heuristic over binned centres (Wald, "On fast construction of SAH-based
 //! bounding volume hierarchies", 2007). The same primitives give the same tree.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use crate::math::real::{each3, three};
 use crate::math::{Mask, Real};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -141,19 +141,20 @@ impl Bvh {
 }
 
 /// Whether rays meet a box at a t from 0 to `t_max`. Never misses by rounding: the far side is widened (Ize, "Robust BVH ray
-/// traversal", JCGT 2(2), 2013), and a NaN (0·∞, a ray within a face) never wins a comparison.
+/// traversal", JCGT 2(2), 2013), and so is `t_max`, or a box that begins at the very t of a hit would hide another one there;
+/// a NaN (0·∞, a ray within a face) never wins a comparison.
 #[inline(always)]
 fn meets<R: Real>(b: &Bounds, o: [R; 3], inverse: [R; 3], t_max: R) -> R::Mask {
     let widen = R::splat(1.0 + 8.0 * R::UNIT_ROUNDOFF);
-    let (mut near, mut far) = (R::zero(), t_max);
+    let (mut near, mut far) = (R::zero(), t_max * widen);
     for i in 0..3 {
-        let (mut lo, mut hi) = (R::splat(b.lo[i]), R::splat(b.hi[i]));
+        let (mut lo, mut hi) = (b.lo[i], b.hi[i]);
         if R::UNIT_ROUNDOFF > f64::EPSILON {
-            // The box itself was rounded on the way into a shorter format.
-            let u = R::splat(2.0 * R::UNIT_ROUNDOFF);
-            lo = lo - u * lo.abs();
-            hi = hi + u * hi.abs();
+            // Box, centre and size were rounded on the way into a shorter format.
+            let reach = 4.0 * R::UNIT_ROUNDOFF * larger(lo.abs(), hi.abs());
+            (lo, hi) = (lo - reach, hi + reach);
         }
+        let (lo, hi) = (R::splat(lo), R::splat(hi));
         let (t0, t1) = ((lo - o[i]) * inverse[i], (hi - o[i]) * inverse[i]);
         let swap = inverse[i].lt(R::zero());
         let (enter, leave) = (R::select(swap, t1, t0), R::select(swap, t0, t1));

@@ -3,6 +3,7 @@
 
 use super::bounds::Bounds;
 use super::shape::{Kind, Ring, Tube};
+use crate::math::affine::reciprocal_power;
 use crate::math::{Affine, Dd};
 use crate::scene::Shape;
 use glam::DVec3;
@@ -52,6 +53,18 @@ impl Rescale {
     }
 }
 
+impl Placed {
+    /// Coordinates of the faces across each axis, in the lengths in which the shape was made; NaN where there are none.
+    pub fn faces_as_made(&self) -> [[f64; 2]; 3] {
+        let faces = match (&self.rescale, &self.form) {
+            (Some(rescale), _) => rescale.faces,
+            (None, Form::Framed(kind)) => Rescale::new(1.0, kind).faces,
+            (None, Form::Triangle(..)) => [[(f64::NAN, f64::NAN); 2]; 3],
+        };
+        faces.map(|across| across.map(|(_, made)| made))
+    }
+}
+
 /// Relative size below which an entry of a map is the rounding error of a rotation: 512 roundings.
 pub const RESIDUE: f64 = 512.0 * f64::EPSILON;
 
@@ -68,7 +81,9 @@ pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
         }
         Shape::Box { from, to } => {
             let half = ((*to - *from) * 0.5).to_array();
-            let centre = Affine::translation(*from + (*to - *from) * 0.5);
+            // In double-double: a box far out has its middle between two numbers.
+            let mut centre = Affine::translation(*from);
+            centre.shift = std::array::from_fn(|i| centre.shift[i] + Dd::new(half[i]));
             vec![framed(Kind::Cuboid(half), centre, Some([[0.0; 3], half]), world_from_object)]
         }
         Shape::Cylinder { from, to, r, caps } => vec![tube(*from, *to, *r, *r, *caps, world_from_object)],
@@ -203,7 +218,10 @@ fn similarity(map: &Affine) -> Option<f64> {
     let even = close(column(1, 1), s2) && close(column(2, 2), s2);
     let square = [(0, 1), (0, 2), (1, 2)].into_iter().all(|(a, b)| close(column(a, b), 0.0));
     let s = s2.sqrt();
-    (even && square).then_some(if close(s2, 1.0) && s2 != 1.0 { 1.0 } else { s })
+    // A rotation's rounding error isn't a scale, whatever power of two is its size.
+    let power = 1.0 / reciprocal_power(s);
+    let near_power = [power, 2.0 * power].into_iter().find(|p| close(s2, p * p));
+    (even && square).then_some(near_power.unwrap_or(s))
 }
 
 /// A right-handed frame at `origin` whose y axis points along `axis`; the world's own axes where one of them does.
