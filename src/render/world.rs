@@ -272,6 +272,15 @@ impl World {
         Tables { maps: &self.maps, triangles: &self.triangles }
     }
 
+    /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
+    pub fn without_tree(mut self) -> World {
+        // Planes of which nothing can say that a ray doesn't meet them.
+        let everywhere = |&(id, _): &(u32, Bounds)| Unbounded { id, n: [0.0; 3], offset: 0.0 };
+        self.unbounded.extend(self.bvh.leaves().iter().map(everywhere));
+        self.bvh = Bvh::default();
+        self
+    }
+
     /// The material of primitive `id`.
     #[inline(always)]
     pub(super) fn surfacing(&self, id: u32) -> &Surfacing {

@@ -6,6 +6,7 @@
 
 mod histogram;
 mod outcome;
+pub mod picture;
 
 pub use histogram::Histogram;
 pub use outcome::{Bound, Figure, Outcome};
