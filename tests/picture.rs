@@ -48,7 +48,10 @@ fn survey() {
         let big = (1u64 << 40) as f64;
         let mut laws = Vec::new();
         laws.extend([-400, -301, -63, -1, 1, 64, 399, 400].map(Law::PowerOfTwo));
-        laws.extend([DVec3::X, DVec3::new(1024.0, 0.0, -3.0), DVec3::new(-big, 512.0, 65536.0), DVec3::new(3.0, big, -big)].map(Law::Moved));
+        laws.extend(
+            [DVec3::X, DVec3::new(1024.0, 0.0, -3.0), DVec3::new(-big, 512.0, 65536.0), DVec3::new(3.0, big, -big)]
+                .map(Law::Moved),
+        );
         laws.extend([0, 1, 2].map(Law::Mirrored));
         laws.extend([0, 1, 2].map(Law::Turned));
         laws.extend([1, 2].map(Law::Shuffled));
@@ -73,7 +76,14 @@ fn report(name: &str, what: &str, scene: &Scene, o: &Options, before: &Film, law
         match law.difference(scene, o, before) {
             None => println!("{name} {what} {law:?}: CAN'T"),
             Some(d) if d.bits > 0 => {
-                println!("{name} {what} {law:?}: bits {} visible {} ({:.4} %) codes {:.3} first {:?}", d.bits, d.visible, 100.0*d.visible_share(), d.codes, d.first)
+                println!(
+                    "{name} {what} {law:?}: bits {} visible {} ({:.4} %) codes {:.3} first {:?}",
+                    d.bits,
+                    d.visible,
+                    100.0 * d.visible_share(),
+                    d.codes,
+                    d.first
+                )
             }
             Some(_) => {}
         }

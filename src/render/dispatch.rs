@@ -174,12 +174,7 @@ impl Work<'_> {
 }
 
 /// Renders one tile.
-fn render_tile<L: Lane>(
-    build: Build,
-    worker: &mut TileWorker<'_, L>,
-    tile: Crop,
-    rows: &mut [&mut [[f32; 3]]],
-) {
+fn render_tile<L: Lane>(build: Build, worker: &mut TileWorker<'_, L>, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
     match build {
         Build::Common => worker.render(tile, rows),
         // SAFETY: `Build::of` alone makes this value, and only where the processor was found to have both.

@@ -137,7 +137,8 @@ fn furnace(mut draw: Draw) -> Case {
     stage.shape(Shape::Sphere { at: DVec3::ZERO, r: 100.0 }, Surface { ambient: 1.0, ..Surface::default() });
     for cell in (0..27).filter(|c| *c != 13) {
         let at = DVec3::new((cell % 3) as f64 - 1.0, (cell / 3 % 3) as f64 - 1.0, (cell / 9) as f64 - 1.0) * 4.0;
-        let (clear, mirror) = (Surface { transmit: 1.0, ..Surface::default() }, Surface { reflect: 1.0, ..Surface::default() });
+        let (clear, mirror) =
+            (Surface { transmit: 1.0, ..Surface::default() }, Surface { reflect: 1.0, ..Surface::default() });
         let surface = match draw.whole(0, 2) {
             0 => mirror,
             1 => clear,

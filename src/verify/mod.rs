@@ -10,6 +10,7 @@ mod outcome;
 pub mod picture;
 mod picture_check;
 mod programme;
+mod reach;
 mod stage;
 mod tally;
 

@@ -216,7 +216,8 @@ pub fn instanced(scene: &Scene) -> Scene {
 /// The scene with its roots and the children of every group in another order, drawn by lot.
 pub fn shuffled(scene: &Scene, lot: u64) -> Scene {
     let mut scene = scene.clone();
-    let shuffle = |ids: &mut Vec<NodeId>| ids.sort_by_cached_key(|id| KeyedHash::new().with(lot).with(id.0 as u64).bits());
+    let shuffle =
+        |ids: &mut Vec<NodeId>| ids.sort_by_cached_key(|id| KeyedHash::new().with(lot).with(id.0 as u64).bits());
     shuffle(&mut scene.roots);
     for node in &mut scene.nodes {
         if let NodeKind::Group(children) = &mut node.kind {

@@ -1,6 +1,7 @@
 //! The laws of whole pictures as checks: each law in many cases, on every scene that it is given.
 
 use super::picture::{Difference, Law, beside, compare, picture, steady};
+use super::reach::reach;
 use super::{Bound, Figure, Outcome, Size};
 use crate::film::Film;
 use crate::render::{Crop, Instructions, Options, World};
@@ -65,7 +66,12 @@ struct Comparisons {
 
 impl Comparisons {
     /// Counts one comparison; `bad` says whether it breaks the law.
-    fn add(&mut self, what: impl FnOnce() -> String, difference: Option<Difference>, bad: impl Fn(&Difference) -> bool) {
+    fn add(
+        &mut self,
+        what: impl FnOnce() -> String,
+        difference: Option<Difference>,
+        bad: impl Fn(&Difference) -> bool,
+    ) {
         let Some(d) = difference else {
             self.silent += 1;
             return;
@@ -96,13 +102,18 @@ fn any(d: &Difference) -> bool {
 }
 
 /// Tries `laws`, each of which leaves every bit, on pictures `width` pixels across.
-fn same_bits(subjects: &[Subject], width: u32, prepared: fn(&Scene) -> Scene, laws: impl Fn(&Options) -> Vec<Law>) -> Outcome {
+fn same_bits(
+    subjects: &[Subject],
+    width: u32,
+    prepared: fn(&Scene) -> Scene,
+    laws: impl Fn(&Scene, &Options) -> Vec<Law>,
+) -> Outcome {
     let mut done = Comparisons::default();
     for subject in subjects {
         let scene = prepared(&subject.scene);
         let options = options(&scene, width);
         let before = picture(&scene, &options);
-        for law in laws(&options) {
+        for law in laws(&scene, &options) {
             done.add(|| format!("{}, {law:?}", subject.name), law.difference(&scene, &options, &before), any);
         }
     }
@@ -119,45 +130,42 @@ fn powers(subjects: &[Subject], size: Size) -> Outcome {
         Size::Quick => vec![-400, -131, -20, -1, 1, 33, 400],
         Size::Long => (-400..=400).filter(|k| *k != 0).collect(),
     };
-    same_bits(subjects, size.pick(96, 128) as u32, Scene::clone, |_| {
-        exponents.iter().copied().map(Law::PowerOfTwo).collect()
+    same_bits(subjects, size.pick(96, 128) as u32, Scene::clone, |scene, _| {
+        let reach = reach(scene);
+        exponents.iter().copied().filter(|k| reach.contains(k)).map(Law::PowerOfTwo).collect()
     })
 }
 
 fn moves(subjects: &[Subject], size: Size) -> Outcome {
     let far = (1u64 << 40) as f64;
-    let mut by = vec![
-        DVec3::X,
-        DVec3::new(1024.0, 0.0, -3.0),
-        DVec3::new(-4096.0, 512.0, 65536.0),
-        DVec3::new(3.0, far, -far),
-    ];
+    let mut by =
+        vec![DVec3::X, DVec3::new(1024.0, 0.0, -3.0), DVec3::new(-4096.0, 512.0, 65536.0), DVec3::new(3.0, far, -far)];
     if size == Size::Long {
         for k in 0..=40 {
             let far = (1u64 << k) as f64;
             by.extend([DVec3::X * far, DVec3::new(-far, far, 1.0), DVec3::new(5.0, -1.0, far)]);
         }
     }
-    same_bits(subjects, width(size), steady, |_| by.iter().copied().map(Law::Moved).collect())
+    same_bits(subjects, width(size), steady, |_, _| by.iter().copied().map(Law::Moved).collect())
 }
 
 fn mirrored(subjects: &[Subject], size: Size) -> Outcome {
-    same_bits(subjects, width(size), Scene::clone, |_| vec![Law::Mirrored(0), Law::Mirrored(1), Law::Mirrored(2)])
+    same_bits(subjects, width(size), Scene::clone, |_, _| vec![Law::Mirrored(0), Law::Mirrored(1), Law::Mirrored(2)])
 }
 
 fn order(subjects: &[Subject], size: Size) -> Outcome {
     let lots = 0..size.pick(3, 40);
-    same_bits(subjects, width(size), Scene::clone, |_| {
+    same_bits(subjects, width(size), Scene::clone, |_, _| {
         lots.clone().map(Law::Shuffled).chain([Law::Instanced]).collect()
     })
 }
 
 fn treeless(subjects: &[Subject], size: Size) -> Outcome {
-    same_bits(subjects, width(size), Scene::clone, |_| vec![Law::Treeless])
+    same_bits(subjects, width(size), Scene::clone, |_, _| vec![Law::Treeless])
 }
 
 fn parts(subjects: &[Subject], size: Size) -> Outcome {
-    same_bits(subjects, width(size), Scene::clone, |o| {
+    same_bits(subjects, width(size), Scene::clone, |_, o| {
         let threads: &[usize] = if size == Size::Long { &[1, 2, 3, 4, 7, 16, 64] } else { &[1, 3] };
         let tiles: &[u32] = if size == Size::Long { &[1, 2, 3, 5, 7, 8, 11, 17, 31, 32] } else { &[1, 7] };
         let (w, h) = (o.width, o.height);
