@@ -38,7 +38,7 @@
 //! | 1 | [`film`] | linear picture, display codes, file formats, atomic files; may use `scene`'s colours |
 //! | 2 | [`lang`] | grammar, evaluation, vocabulary: text to scene |
 //! | 2 | [`render`] | world, rays, shapes, materials, integrator, tiles: scene to film |
-//! | 3 | [`verify`] | laws that pictures must obey, checked by rendering; knows nothing of the language |
+//! | 3 | [`verify`] | the programme of proofs: checks of kernels and pictures at the extremes; never [`lang`] |
 //! | 4 | [`app`] | one file or folder a command: arguments, exit codes, everything that prints, watches or serves |
 //!
 //! # Rules that hold everywhere

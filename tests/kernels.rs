@@ -117,7 +117,7 @@ fn what_leaves_a_surface_never_meets_it_again_at_once() {
             for side in [1.0, -1.0] {
                 let from = spawn_point(s.p, s.n, side * s.offset);
                 let dir = out.map(|x| x * side);
-                let own = Own { here: Bool(true), part };
+                let own = Own { here: Bool(true), part, outward: Bool(side > 0.0) };
                 let again = c.crossings(from, dir, Some(own));
                 // Another shape in the very same place, which knows nothing of where the ray started.
                 let twin = c.crossings(from, dir, None);

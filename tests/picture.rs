@@ -171,7 +171,7 @@ fn survey() {
         let o = options(&scene, 320, 180);
         let before = picture(&scene, &o);
         let n = World::build(&scene, &scene.cameras[0]).primitive_count() as u64;
-        let rays = 200_000_000 / n.max(1);
+        let rays = 60_000_000 / n.max(1);
         let search = Search::through(&World::build(&scene, &scene.cameras[0]), rays.min(1_000_000), 3);
         println!("{name}: {n} primitives, {search:?}");
         report(&name, "f64", &scene, &o, &before, &[1e-6, 1e-3, 1e3, 1e6, 1e9].map(Law::Scaled));

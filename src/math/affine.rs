@@ -99,7 +99,7 @@ impl Affine {
         let mut m = self.linear;
         let mut powers = [Dd::new(1.0); 3];
         for (row, power) in m.iter_mut().zip(&mut powers) {
-            // A product of a 0 and what isn't finite is 0 here, and would hide it.
+            // A comparison alone would miss a NaN.
             if row.iter().any(|x| !x.hi.is_finite()) {
                 return None;
             }

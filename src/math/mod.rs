@@ -3,6 +3,7 @@
 
 pub mod affine;
 pub mod dd;
+pub mod float;
 pub mod fun;
 pub mod hash;
 pub mod noise;
@@ -10,4 +11,4 @@ pub mod real;
 
 pub use affine::Affine;
 pub use dd::Dd;
-pub use real::{Elem, Lane, Mask, Real};
+pub use real::{Elem, Lane, Mask, Real, Single};

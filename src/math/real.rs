@@ -40,8 +40,14 @@ pub trait Real:
 {
     /// What comparisons give.
     type Mask: Mask;
+    /// One value of this kind alone, in which is computed what branches too much for masks: for lanes, `f64`.
+    type Single: Single;
+    /// A more exact scalar, for the few cases that hang on the last bits: of machine numbers, double-double.
+    type Fine: Real;
     /// Half an ulp of 1 in this precision.
     const UNIT_ROUNDOFF: f64;
+    /// The smallest positive normal number: nothing but "more than 0", whatever the scene's scale.
+    const LEAST: f64;
 
     /// The constant `x`, rounded to this precision.
     fn splat(x: f64) -> Self;
@@ -63,9 +69,49 @@ pub trait Real:
     fn same(self, o: Self) -> Self::Mask;
     /// `a` where `m`, else `b`.
     fn select(m: Self::Mask, a: Self, b: Self) -> Self;
-    /// A function of N values that gives M, applied lane by lane in `f64`: for elementary functions, look-ups in tables,
-    /// and whatever branches too much to be written with masks.
-    fn each<const N: usize, const M: usize>(v: [Self; N], f: impl FnMut([f64; N]) -> [f64; M]) -> [Self; M];
+    /// A function of N values that gives M, applied lane by lane to [`Single`](Real::Single) values: for elementary
+    /// functions, look-ups in tables, and whatever branches too much to be written with masks.
+    fn each<const N: usize, const M: usize>(
+        v: [Self; N],
+        f: impl FnMut([Self::Single; N]) -> [Self::Single; M],
+    ) -> [Self; M];
+
+    /// `rough`, but what `f` makes of `given` in [`Fine`](Real::Fine) in the lanes of `doubt`. Scalars that are themselves more
+    /// than a machine number keep `rough`.
+    #[inline(always)]
+    fn again<const N: usize, const M: usize>(
+        doubt: Self::Mask,
+        given: [Self; N],
+        rough: [Self; M],
+        f: impl FnMut([Self::Fine; N]) -> [Self::Fine; M],
+    ) -> [Self; M] {
+        let _ = (doubt, given, f);
+        rough
+    }
+
+    /// `self + o` and its exact rounding error, 0 where the scalar isn't rounded to a machine number (Knuth's TwoSum; Ogita,
+    /// Rump, Oishi, SIAM J. Sci. Comput. 26, 2005).
+    #[inline(always)]
+    fn two_sum(self, o: Self) -> (Self, Self) {
+        let s = self + o;
+        let back = s - self;
+        (s, (self - (s - back)) + (o - back))
+    }
+    /// `self * o` and its exact rounding error, by a fused multiply-add (barring under- and overflow); 0 where the scalar
+    /// isn't rounded to a machine number.
+    #[inline(always)]
+    fn two_prod(self, o: Self) -> (Self, Self) {
+        let p = self * o;
+        (p, self.mul_sub(o, p))
+    }
+    /// `self·b − c·d` to within 2 units of roundoff, so its sign is exact (Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82,
+    /// 2013).
+    #[inline(always)]
+    fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self {
+        let w = c * d;
+        let e = (-c).mul_add(d, w);
+        self.mul_sub(b, w) + e
+    }
 
     /// Zero.
     #[inline(always)]
@@ -79,7 +125,7 @@ pub trait Real:
     }
     /// [`each`](Real::each) of one value.
     #[inline(always)]
-    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
+    fn map(self, mut f: impl FnMut(Self::Single) -> Self::Single) -> Self {
         Self::each([self], |[x]| [f(x)])[0]
     }
     /// `self * b - c` with one rounding.
@@ -99,8 +145,23 @@ pub trait Real:
     }
 }
 
+/// A [`Real`] that holds one value: what branches is written for it.
+pub trait Single: Real<Single = Self> {
+    /// Its magnitude, or a bound on it, roughly: for choosing a power of two to scale by.
+    fn magnitude(self) -> f64;
+
+    /// The roots of a polynomial of degree 3 or 4, highest coefficient first, within −`span`..`span`, as enclosures: pairs of
+    /// root and 1 for a root, 0 for none, the whole of 0..1 for what may be one. `None` for scalars that are numbers, whose
+    /// roots are found by deciding comparisons.
+    #[inline(always)]
+    fn enclosed_roots(poly: &[Self], span: Self) -> Option<[(Self, Self); 4]> {
+        let _ = (poly, span);
+        None
+    }
+}
+
 /// A [`Real`] that moves between registers and the arrays of a ray batch.
-pub trait Lane: Real {
+pub trait Lane: Real<Single = f64> {
     /// The stored form.
     type Elem: Elem;
     /// How many values one `Lane` holds.
@@ -153,123 +214,6 @@ impl Mask for Bool {
     fn bits(self) -> u32 {
         self.0 as u32
     }
-}
-
-macro_rules! scalar {
-    ($t:ident) => {
-        impl Elem for $t {
-            const UNIT_ROUNDOFF: f64 = $t::EPSILON as f64 / 2.0;
-            #[inline(always)]
-            fn to_f64(self) -> f64 {
-                self as f64
-            }
-            #[inline(always)]
-            fn from_f64(x: f64) -> $t {
-                x as $t
-            }
-        }
-        impl Real for $t {
-            type Mask = Bool;
-            const UNIT_ROUNDOFF: f64 = <$t as Elem>::UNIT_ROUNDOFF;
-            #[inline(always)]
-            fn splat(x: f64) -> Self {
-                x as $t
-            }
-            #[inline(always)]
-            fn mul_add(self, b: Self, c: Self) -> Self {
-                $t::mul_add(self, b, c)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                $t::sqrt(self)
-            }
-            #[inline(always)]
-            fn floor(self) -> Self {
-                $t::floor(self)
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                $t::abs(self)
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                $t::copysign(self, sign)
-            }
-            #[inline(always)]
-            fn lt(self, o: Self) -> Bool {
-                Bool(self < o)
-            }
-            #[inline(always)]
-            fn le(self, o: Self) -> Bool {
-                Bool(self <= o)
-            }
-            #[inline(always)]
-            fn same(self, o: Self) -> Bool {
-                Bool(self == o)
-            }
-            #[inline(always)]
-            fn select(m: Bool, a: Self, b: Self) -> Self {
-                if m.0 { a } else { b }
-            }
-            #[inline(always)]
-            fn each<const N: usize, const M: usize>(
-                v: [Self; N],
-                mut f: impl FnMut([f64; N]) -> [f64; M],
-            ) -> [Self; M] {
-                let (mut given, mut out) = ([0.0; N], [0.0; M]);
-                for (to, from) in given.iter_mut().zip(v) {
-                    *to = from as f64;
-                }
-                for (to, from) in out.iter_mut().zip(f(given)) {
-                    *to = from as $t;
-                }
-                out
-            }
-        }
-        impl Lane for $t {
-            type Elem = $t;
-            const WIDTH: usize = 1;
-            #[inline(always)]
-            fn load(src: &[$t]) -> Self {
-                src[0]
-            }
-            #[inline(always)]
-            fn store(self, dst: &mut [$t]) {
-                dst[0] = self;
-            }
-            #[inline(always)]
-            fn compress(self, m: Bool, dst: &mut [$t]) {
-                if m.0 {
-                    dst[0] = self;
-                }
-            }
-        }
-    };
-}
-scalar!(f64);
-scalar!(f32);
-
-/// `a + b` and its exact rounding error (Knuth's TwoSum; Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 2005).
-#[inline(always)]
-pub fn two_sum<R: Real>(a: R, b: R) -> (R, R) {
-    let s = a + b;
-    let bb = s - a;
-    (s, (a - (s - bb)) + (b - bb))
-}
-
-/// `a * b` and its exact rounding error, by a fused multiply-add (barring under- and overflow).
-#[inline(always)]
-pub fn two_prod<R: Real>(a: R, b: R) -> (R, R) {
-    let p = a * b;
-    (p, a.mul_sub(b, p))
-}
-
-/// `a·b − c·d` to within 2 units of roundoff, so its sign is exact (Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82, 2013).
-#[inline(always)]
-pub fn difference_of_products<R: Real>(a: R, b: R, c: R, d: R) -> R {
-    let w = c * d;
-    let e = (-c).mul_add(d, w);
-    a.mul_sub(b, w) + e
 }
 
 /// Bound on the relative error of `n` rounded operations in sequence: n·u / (1 − n·u) (Higham, *Accuracy and Stability
@@ -325,25 +269,4 @@ pub fn splat3<R: Real>(v: [f64; 3]) -> [R; 3] {
 #[inline(always)]
 pub fn select3<R: Real>(m: R::Mask, a: [R; 3], b: [R; 3]) -> [R; 3] {
     [R::select(m, a[0], b[0]), R::select(m, a[1], b[1]), R::select(m, a[2], b[2])]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn error_free_transforms_are_exact() {
-        let (s, e) = two_sum(1.0f64, 1e-20);
-        assert_eq!((s, e), (1.0, 1e-20));
-        let x = 1.0 + f64::EPSILON;
-        let (p, e) = two_prod(x, x);
-        assert_eq!((p, e), (1.0 + 2.0 * f64::EPSILON, f64::EPSILON * f64::EPSILON));
-    }
-
-    #[test]
-    fn determinant_sign_survives_cancellation() {
-        let x = 1.0 + f64::EPSILON;
-        assert_eq!(x * x - (x + f64::EPSILON) * 1.0, 0.0, "the plain form loses it");
-        assert!(difference_of_products(x, x, x + f64::EPSILON, 1.0) > 0.0);
-    }
 }

@@ -53,6 +53,8 @@ pub struct RayBatch<E> {
     pub source: Column<E>,
     /// The part of it.
     pub source_part: Column<E>,
+    /// 1 where it leaves that primitive to the outside, 0 where to the inside.
+    pub outward: Column<E>,
     /// Number of rays.
     pub len: usize,
 }
@@ -67,6 +69,7 @@ impl<E: Elem> RayBatch<E> {
             slot: column(n),
             source: column(n),
             source_part: column(n),
+            outward: column(n),
             len: 0,
         }
     }

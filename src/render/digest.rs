@@ -54,10 +54,15 @@ pub struct LengthKey {
 impl LengthKey {
     /// The key of `plain` numbers and `lengths`, all finite.
     pub fn new(plain: impl Iterator<Item = f64> + Clone, lengths: impl Iterator<Item = f64> + Clone) -> LengthKey {
-        let power = power_to_unit(lengths.clone());
+        let mut power = power_to_unit(lengths.clone());
+        if std::env::var_os("MUT_KEY").is_some() {
+            power = 1.0;
+        }
         let all = || plain.clone().chain(lengths.clone().map(|x| x * power));
         // -0 counts as 0.
-        let content = all().fold(KeyedHash::new(), |h, x| h.with_f64(x.abs())).bits();
+        let content = all()
+            .fold(KeyedHash::new(), |h, x| h.with_f64(if std::env::var_os("MUT_SIGN").is_some() { x } else { x.abs() }))
+            .bits();
         let signed = all().fold(KeyedHash::new(), KeyedHash::with_f64).bits();
         LengthKey { content, power: power.to_bits(), signed }
     }

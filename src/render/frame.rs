@@ -5,7 +5,7 @@
 //! shape are then as good as those of a near one.
 
 use super::ray::LocalRay;
-use crate::math::real::{dot, each3, splat3, three, two_prod, two_sum};
+use crate::math::real::{dot, each3, splat3, three};
 use crate::math::{Affine, Real};
 
 /// Placement of a shape.
@@ -44,6 +44,7 @@ impl LinearMap {
     pub fn new(world_from_local: [[f64; 3]; 3], local_from_world: [[f64; 3]; 3]) -> LinearMap {
         let exchange = world_from_local.as_flattened().iter().all(|x| *x == 0.0 || x.abs() == 1.0)
             && world_from_local.iter().all(|row| row.iter().filter(|x| **x != 0.0).count() == 1);
+        let exchange = exchange && std::env::var_os("MUT_FLAG").is_none();
         LinearMap { local_from_world, world_from_local, exchange }
     }
 }
@@ -71,7 +72,7 @@ impl Frame {
             if AT_EYE {
                 return (c, c_lo);
             }
-            let (hi, lo) = two_sum(o[i], c);
+            let (hi, lo) = o[i].two_sum(c);
             (hi, lo + c_lo)
         });
         match self.axes {
@@ -87,11 +88,11 @@ impl Frame {
                 let mut out = LocalRay { o: d, o_lo: d, d };
                 for (r, row) in rows.iter().enumerate() {
                     let a = splat3::<R>(*row);
-                    let (s0, e0) = two_prod(a[0], f[0].0);
-                    let (p1, e1) = two_prod(a[1], f[1].0);
-                    let (p2, e2) = two_prod(a[2], f[2].0);
-                    let (s1, g1) = two_sum(s0, p1);
-                    let (s2, g2) = two_sum(s1, p2);
+                    let (s0, e0) = a[0].two_prod(f[0].0);
+                    let (p1, e1) = a[1].two_prod(f[1].0);
+                    let (p2, e2) = a[2].two_prod(f[2].0);
+                    let (s1, g1) = s0.two_sum(p1);
+                    let (s2, g2) = s1.two_sum(p2);
                     out.o[r] = s2;
                     out.o_lo[r] = ((e0 + e1) + (e2 + g1)) + (g2 + dot(a, each3(f, |x| x.1)));
                     out.d[r] = dot(a, d);

@@ -20,11 +20,13 @@ pub struct Shadow {
 
 /// Rays from points of a surface to one light.
 #[derive(Clone, Copy)]
-pub struct ShadowRays<'w, L> {
+pub struct ShadowRays<'w, L: Lane> {
     /// The primitive that they start on.
     pub source: u32,
     /// The part of it.
     pub part: L,
+    /// Lanes that leave it to the outside.
+    pub outward: L::Mask,
     /// Where they start.
     pub o: [L; 3],
     /// Towards the light, of unit length.
@@ -54,7 +56,7 @@ impl<L: Lane> ShadowRays<'_, L> {
 
     #[inline(always)]
     fn own(&self, k: u32) -> Option<Own<L>> {
-        Some(Own { here: L::Mask::splat(k == self.source), part: self.part })
+        Some(Own { here: L::Mask::splat(k == self.source), part: self.part, outward: self.outward })
     }
 }
 

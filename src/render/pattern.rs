@@ -9,7 +9,7 @@
 use super::texture::{Edge, Texture};
 use crate::math::fun;
 use crate::math::noise::{cell_noise, unit_noise, vector_noise};
-use crate::math::real::{Mask, Real, each3, select3, splat3, three};
+use crate::math::real::{Lane, Mask, Real, each3, select3, splat3, three};
 use crate::scene::{Filter, Mapping};
 
 /// The patterns of a world.
@@ -131,7 +131,7 @@ fn apply_linear<R: Real>(rows: &[[f64; 3]; 3], p: [R; 3]) -> [R; 3] {
 
 impl PatternTable {
     /// The value of pattern `id`. Recursion is as deep as patterns nest, which the language limits.
-    pub fn eval<R: Real>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+    pub fn eval<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
         let p = at.p;
         match &self.nodes[id as usize] {
             PatternNode::Constant(c) => splat3(*c),
@@ -207,13 +207,13 @@ impl PatternTable {
         }
     }
 
-    fn by_parity<R: Real>(&self, a: u32, b: u32, n: R, at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn by_parity<R: Lane>(&self, a: u32, b: u32, n: R, at: &PatternPoint<'_, R>) -> [R; 3] {
         let half = n * R::splat(0.5);
         self.choose(half.floor().same(half), a, b, at)
     }
 
     /// `a` where `m`, else `b`; what no lane needs isn't evaluated.
-    fn choose<R: Real>(&self, m: R::Mask, a: u32, b: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn choose<R: Lane>(&self, m: R::Mask, a: u32, b: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
         if !m.any() {
             self.eval(b, at)
         } else if !(!m).any() {
@@ -223,12 +223,12 @@ impl PatternTable {
         }
     }
 
-    fn lerp<R: Real>(&self, a: u32, b: u32, s: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn lerp<R: Lane>(&self, a: u32, b: u32, s: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         let (a, b) = (self.eval(a, at), self.eval(b, at));
         three(|i| (R::one() - s[i]) * a[i] + s[i] * b[i])
     }
 
-    fn blend<R: Real>(&self, stops: &[u32], by: R, at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn blend<R: Lane>(&self, stops: &[u32], by: R, at: &PatternPoint<'_, R>) -> [R; 3] {
         let last = stops.len() - 1;
         let x = clamp01(by) * R::splat(last as f64);
         let mut out = self.eval(stops[0], at);

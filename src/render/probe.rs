@@ -49,7 +49,8 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
         if !(dot(normal, l) > 0.0) {
             return [0.0; 3];
         }
-        let rays = ShadowRays { source: id, part, o: from, l, distance, touched: &light.touched };
+        let outward = Bool(towards > 0.0);
+        let rays = ShadowRays { source: id, part, outward, o: from, l, distance, touched: &light.touched };
         occlusion(world, &everything, &rays, Bool(true), &mut scratch, &mut Recorder::off())
     };
     let lights = world.lights.iter().map(|l| (l.node, arriving(l))).collect();

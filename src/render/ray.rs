@@ -1,7 +1,7 @@
 //! Rays as the kernels see them: in the frame of one shape, with what rounding left out of the origin.
 
 use crate::math::Real;
-use crate::math::real::three;
+use crate::math::real::{dot, three};
 
 /// A ray in a shape's own frame. `t` is the same number as in the world.
 #[derive(Clone, Copy, Debug)]
@@ -15,10 +15,32 @@ pub struct LocalRay<R> {
 }
 
 impl<R: Real> LocalRay<R> {
+    /// The way along an axis to the coordinate `level`, rounded once: surfaces in one plane are met at one t, wherever their
+    /// frames have their origins.
+    #[inline(always)]
+    pub fn way_to(&self, axis: usize, level: R) -> R {
+        let (way, error) = level.two_sum(-self.o[axis]);
+        way + (error - self.o_lo[axis])
+    }
+
     /// The point at `t`: one rounding on the large part, so nothing is lost to the distance of the origin.
     #[inline(always)]
     pub fn at(&self, t: R) -> [R; 3] {
         three(|i| t.mul_add(self.d[i], self.o[i]) + self.o_lo[i])
+    }
+
+    /// The parameter of the line's point nearest to the frame's origin, rounded, and the line's point there, with what rounding
+    /// left out put back (TwoProd, TwoSum): from here a shape is judged as well as from near by, however far the ray
+    /// starts.
+    #[inline(always)]
+    pub fn nearest(&self) -> (R, [R; 3]) {
+        let t0 = -(dot(self.o, self.d) / dot(self.d, self.d));
+        let m = three(|i| {
+            let (p, e) = t0.two_prod(self.d[i]);
+            let (s, se) = self.o[i].two_sum(p);
+            s + (se + (e + self.o_lo[i]))
+        });
+        (t0, m)
     }
 }
 
@@ -30,6 +52,9 @@ pub struct Own<R: Real> {
     pub here: R::Mask,
     /// The part of it that they start on.
     pub part: R,
+    /// Lanes whose rays leave to the outside: the side that the surface's normal points to. From a convex shape they don't
+    /// come back.
+    pub outward: R::Mask,
 }
 
 impl<R: Real> Own<R> {
@@ -38,4 +63,21 @@ impl<R: Real> Own<R> {
     pub fn on(&self, part: R) -> R::Mask {
         self.here & self.part.same(part)
     }
+}
+
+/// What a ray that starts on a convex shape can still meet of it. To the outside nothing; to the inside the way out,
+/// however near: rounding may put it at the start or behind, but light that went in must come out.
+#[inline(always)]
+pub fn convex_exit<R: Real>(
+    own: &Option<Own<R>>,
+    way_in: R::Mask,
+    t_out: R,
+    way_out: R::Mask,
+) -> (R::Mask, R, R::Mask) {
+    let Some(own) = own else { return (way_in, t_out, way_out) };
+    let inward = own.here & !own.outward;
+    let least = R::splat(R::LEAST);
+    // A NaN, of a ray that only touches, is the nearest way out too.
+    let t_exit = R::select(least.lt(t_out), t_out, least);
+    (way_in & !own.here, R::select(inward, t_exit, t_out), (way_out & !own.here) | inward)
 }

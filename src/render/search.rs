@@ -9,7 +9,7 @@ use crate::math::hash::KeyedHash;
 use crate::math::real::three;
 
 /// What the tree and a search through everything found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Search {
     /// Rays sent.
     pub rays: u64,
@@ -17,6 +17,8 @@ pub struct Search {
     pub hits: u64,
     /// Rays of which t or the surface differ.
     pub differing: u64,
+    /// The first of those: origin, relative to the camera, and direction.
+    pub first: Option<([f64; 3], [f64; 3])>,
 }
 
 impl Search {
@@ -43,7 +45,10 @@ impl Search {
                 |hits: &HitColumns<f64>, i: usize| (hits.t[i].to_bits(), hits.id[i].to_bits(), hits.part[i].to_bits());
             for i in 0..batch.len {
                 search.hits += (found[1].id[i] != NONE) as u64;
-                search.differing += (what(&found[0], i) != what(&found[1], i)) as u64;
+                if what(&found[0], i) != what(&found[1], i) {
+                    search.differing += 1;
+                    search.first = search.first.or(Some((three(|c| batch.o[c][i]), three(|c| batch.d[c][i]))));
+                }
             }
             search.rays += batch.len as u64;
         }

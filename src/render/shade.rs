@@ -170,7 +170,8 @@ fn illuminate<L: Lane>(
         if front.any() {
             *shadow_rays += front.bits().count_ones() as u64;
             let part = L::load(&hits.part[g..]);
-            let rays = ShadowRays { source: hits.id, part, o, l, distance, touched: &light.touched };
+            let outward = !L::load(&s.inside[g..]).same(L::one());
+            let rays = ShadowRays { source: hits.id, part, outward, o, l, distance, touched: &light.touched };
             let seen = occlusion(world, &s.occluders, &rays, front, &mut s.shadow, &mut s.recorder);
             let zero = L::zero();
             let arrives: [L; 3] = three(|c| L::select(front, color[c] * seen[c], zero));
@@ -276,33 +277,33 @@ fn finish<L: Lane>(
             let mut back = slot::<L>(world, m.reflect, frame, s, g);
             let mut through = slot::<L>(world, m.transmit, frame, s, g);
             let mut onward = d;
+            let inside = L::load(&s.inside[g..]);
+            let outside = L::one() - inside;
             if let Some(ior) = m.ior {
-                let inside = L::load(&s.inside[g..]).same(L::one());
-                let bent = dielectric(d, ns, ior, inside);
+                let bent = dielectric(d, ns, ior, inside.same(L::one()));
                 back = three(|c| through[c].mul_add(bent.reflectance, back[c]));
                 through = each3(through, |x| x * (L::one() - bent.reflectance));
                 onward = bent.direction;
             }
             let live = lanes_below::<L>(rays.len - g);
             let part = L::load(&hits.part[g..]);
-            let from = |o: [L; 3], d: [L; 3], w: [L; 3]| Child { o, d, w: three(|c| weight[c] * w[c]), part };
+            let from = |o: [L; 3], d: [L; 3], w: [L; 3], outward: L| {
+                let w = three(|c| weight[c] * w[c]);
+                Child { o, d, w, part, outward }
+            };
             if mirrors {
                 // A tilted normal may send the mirrored ray into the surface; then the true normal decides.
                 let tilted = mirrored(d, ns);
                 let out = L::zero().lt(dot(tilted, n));
                 let plain = mirrored(d, n);
                 let r = three(|c| L::select(out, tilted[c], plain[c]));
-                push(children.mirrored, from(spawn_point(p, n, offset), r, back), live, hits.id, &rays.slot[g..]);
+                let child = from(spawn_point(p, n, offset), r, back, outside);
+                push(children.mirrored, child, live, hits.id, &rays.slot[g..]);
             }
             if lets_through {
                 let live = live & dot(onward, n).lt(L::zero());
-                push(
-                    children.transmitted,
-                    from(spawn_point(p, n, -offset), onward, through),
-                    live,
-                    hits.id,
-                    &rays.slot[g..],
-                );
+                let child = from(spawn_point(p, n, -offset), onward, through, inside);
+                push(children.transmitted, child, live, hits.id, &rays.slot[g..]);
             }
         }
         g += L::WIDTH;
@@ -315,6 +316,8 @@ struct Child<L> {
     d: [L; 3],
     w: [L; 3],
     part: L,
+    /// 1 where it leaves to the outside.
+    outward: L,
 }
 
 /// Appends those of `live` that carry any weight.
@@ -336,6 +339,7 @@ fn push<L: Lane>(batch: &mut RayBatch<L::Elem>, child: Child<L>, live: L::Mask, 
     L::load(slots).compress(live, &mut batch.slot[at..]);
     L::splat(id as f64).compress(live, &mut batch.source[at..]);
     child.part.compress(live, &mut batch.source_part[at..]);
+    child.outward.compress(live, &mut batch.outward[at..]);
     batch.len += count;
 }
 

@@ -5,8 +5,8 @@ use super::pattern::{PatternPoint, Rows, apply};
 use super::place::RESIDUE;
 use super::shape::{Kind, Primitive};
 use super::world::{MadeSpace, World};
-use crate::math::Real;
 use crate::math::real::{axpy, dot, each3, minus, scaled, splat3, three};
+use crate::math::{Lane, Real};
 
 /// The maps from one primitive's frame to the spaces of its material's patterns.
 pub struct PatternFrame<'w> {
@@ -78,7 +78,7 @@ impl<'w> PatternFrame<'w> {
     }
 
     /// What the material lets through at a point.
-    pub fn transmission<R: Real>(&self, world: &World, at: &PatternPoint<'_, R>) -> [R; 3] {
+    pub fn transmission<R: Lane>(&self, world: &World, at: &PatternPoint<'_, R>) -> [R; 3] {
         match self.surfacing.transmit {
             Slot::Constant(c) => splat3(c),
             Slot::Pattern(id) => world.patterns.eval(id, at),
@@ -113,7 +113,7 @@ fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
 /// The normal `ns` tilted by the slope of the height pattern: n − ∇h along the surface, in the space in which the shape was
 /// made (Blinn, "Simulation of wrinkled surfaces", SIGGRAPH 1978). Slopes are central differences, a fraction of a feature
 /// wide.
-pub fn bumped<R: Real>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3], n: [R; 3], ns: [R; 3]) -> [R; 3] {
+pub fn bumped<R: Lane>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3], n: [R; 3], ns: [R; 3]) -> [R; 3] {
     let (Some((pattern, step)), Some(made)) = (frame.surfacing.bump, frame.made) else { return ns };
     let Some(detail) = &made.detail else { return ns };
     let local = frame.as_made(local);

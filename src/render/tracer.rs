@@ -197,14 +197,18 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
     while g < rays.len {
         let d = load3::<L>(&rays.d, g);
         let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
-        let (source, part) = (L::load(&rays.source[g..]), L::load(&rays.source_part[g..]));
+        let start = Start {
+            primitive: L::load(&rays.source[g..]),
+            part: L::load(&rays.source_part[g..]),
+            outward: L::one().same(L::load(&rays.outward[g..])),
+        };
         let mut best = Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() };
         for &k in &candidates.ids {
-            best.test::<AT_EYE>(world, k, o, d, (source, part));
+            best.test::<AT_EYE>(world, k, o, d, &start);
         }
         if candidates.tree {
             world.bvh.traverse(o, d, best.t, |k| {
-                best.test::<AT_EYE>(world, k, o, d, (source, part));
+                best.test::<AT_EYE>(world, k, o, d, &start);
                 best.t
             });
         }
@@ -213,6 +217,14 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
         best.part.store(&mut hits.part[g..]);
         g += L::WIDTH;
     }
+}
+
+/// Where rays start.
+struct Start<R: Real> {
+    /// The primitive, or [`NONE`].
+    primitive: R,
+    part: R,
+    outward: R::Mask,
 }
 
 /// Keeps the nearest crossing; of two at the same t, that of the primitive with the lower number.
@@ -224,11 +236,12 @@ struct Nearest<R> {
 }
 
 impl<R: Real> Nearest<R> {
-    /// Tests primitive `k` for rays that start on `source` = (primitive, part).
+    /// Tests primitive `k`.
     #[inline(always)]
-    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, o: [R; 3], d: [R; 3], source: (R, R)) {
+    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, o: [R; 3], d: [R; 3], start: &Start<R>) {
         self.current = R::splat(k as f64);
-        let own = if AT_EYE { None } else { Some(Own { here: source.0.same(self.current), part: source.1 }) };
+        let here = start.primitive.same(self.current);
+        let own = if AT_EYE { None } else { Some(Own { here, part: start.part, outward: start.outward }) };
         world.primitives[k as usize].crossings::<R, AT_EYE>(world.tables(), o, d, own, self);
     }
 }

@@ -2,41 +2,60 @@
 
 use super::{Point, Visit};
 use crate::math::Real;
-use crate::render::ray::{LocalRay, Own};
+use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// Parts are numbered 2·axis for the lower face, 2·axis + 1 for the upper one.
+///
+/// Which face comes first is judged from the line's point nearest to the centre, so that edges are as sharp from afar; t is
+/// then taken from the ray's own origin.
 #[inline(always)]
 pub(super) fn crossings<R: Real>(half: [f64; 3], ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let zero = R::zero();
-    let infinity = R::splat(f64::INFINITY);
-    let (mut t_in, mut t_out) = (-infinity, infinity);
-    let (mut part_in, mut part_out) = (zero, zero);
+    let (_, m) = ray.nearest();
+    let mut enter: Wall<R> = Wall::at(-f64::INFINITY);
+    let mut leave: Wall<R> = Wall::at(f64::INFINITY);
     let mut inside = zero.same(zero);
     for (axis, &extent) in half.iter().enumerate() {
-        let (h, o, lo, d) = (R::splat(extent), ray.o[axis], ray.o_lo[axis], ray.d[axis]);
-        let (to_lower, to_upper) = ((-h - o) - lo, (h - o) - lo);
-        let (tl, tu) = (to_lower / d, to_upper / d);
+        let (h, d) = (R::splat(extent), ray.d[axis]);
         let up = zero.lt(d);
         let level = d.same(zero);
         // Along the slab it is inside throughout or not at all; the quotients there are not used.
+        let (to_lower, to_upper) = (ray.way_to(axis, -h), ray.way_to(axis, h));
         inside = inside & (!level | (to_lower.le(zero) & zero.le(to_upper)));
-        let (lower, upper) = (R::splat(2.0 * axis as f64), R::splat(2.0 * axis as f64 + 1.0));
-        let (enter, leave) = (R::select(up, tl, tu), R::select(up, tu, tl));
-        let later = !level & t_in.lt(enter);
-        t_in = R::select(later, enter, t_in);
-        part_in = R::select(later, R::select(up, lower, upper), part_in);
-        let sooner = !level & leave.lt(t_out);
-        t_out = R::select(sooner, leave, t_out);
-        part_out = R::select(sooner, R::select(up, upper, lower), part_out);
+        let inverse = R::one() / d;
+        let lower = Wall { tau: (-h - m[axis]) * inverse, to: to_lower, d, part: R::splat(2.0 * axis as f64) };
+        let upper = Wall { tau: (h - m[axis]) * inverse, to: to_upper, d, part: R::splat(2.0 * axis as f64 + 1.0) };
+        let (first, second) = (Wall::select(up, lower, upper), Wall::select(up, upper, lower));
+        enter = Wall::select(!level & enter.tau.lt(first.tau), first, enter);
+        leave = Wall::select(!level & second.tau.lt(leave.tau), second, leave);
     }
-    let crosses = inside & t_in.le(t_out);
-    let (mut way_in, mut way_out) = (crosses, crosses);
-    if let Some(own) = own {
-        way_in = way_in & !own.on(part_in);
-        way_out = way_out & !own.on(part_out);
+    let crosses = inside & enter.tau.le(leave.tau);
+    let (way_in, t_out, way_out) = convex_exit(&own, crosses, leave.to / leave.d, crosses);
+    visit.crossing(enter.to / enter.d, enter.part, way_in);
+    visit.crossing(t_out, leave.part, way_out);
+}
+
+/// Where a line passes a face's plane.
+#[derive(Clone, Copy)]
+struct Wall<R> {
+    /// From the line's point nearest to the centre.
+    tau: R,
+    /// The way there across the plane, from the ray's origin, and the direction's share of it.
+    to: R,
+    d: R,
+    part: R,
+}
+
+impl<R: Real> Wall<R> {
+    #[inline(always)]
+    fn at(tau: f64) -> Self {
+        Wall { tau: R::splat(tau), to: R::splat(tau), d: R::one(), part: R::zero() }
     }
-    visit.crossing(t_in, part_in, way_in);
-    visit.crossing(t_out, part_out, way_out);
+    #[inline(always)]
+    fn select(m: R::Mask, a: Self, b: Self) -> Self {
+        let pick = |x: R, y: R| R::select(m, x, y);
+        Wall { tau: pick(a.tau, b.tau), to: pick(a.to, b.to), d: pick(a.d, b.d), part: pick(a.part, b.part) }
+    }
 }
 
 /// The point of face `part` under `p`: exactly on that face.

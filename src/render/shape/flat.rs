@@ -13,11 +13,7 @@ fn t_at_level<R: Real>(ray: &LocalRay<R>) -> R {
 /// Calls `visit(t, part, valid)` for the crossing of the plane.
 #[inline(always)]
 pub(super) fn plane_crossing<R: Real>(ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
-    let mut valid = !ray.d[1].same(R::zero());
-    if let Some(own) = own {
-        valid = valid & !own.here;
-    }
-    visit.crossing(t_at_level(ray), R::zero(), valid);
+    visit.crossing(t_at_level(ray), R::zero(), is_met(ray, own));
 }
 
 /// Calls `visit(t, part, valid)` for the crossing of the ring between the radii `hole` and `r`.
@@ -30,14 +26,25 @@ pub(super) fn disc_crossing<R: Real>(
     visit: &mut impl Visit<R>,
 ) {
     let t = t_at_level(ray);
-    let p = ray.at(t);
-    let rho2 = p[0].mul_add(p[0], p[2] * p[2]);
+    // Rounding t alone moves the point by an ulp of the distance, which far away is more than the disc: so the rest that the
+    // rounded t leaves of the height goes on as a correction.
+    let rest = -((t.mul_add(ray.d[1], ray.o[1]) + ray.o_lo[1]) / ray.d[1]);
+    let across = |i: usize| t.mul_add(ray.d[i], ray.o[i]) + rest.mul_add(ray.d[i], ray.o_lo[i]);
+    let (x, z) = (across(0), across(2));
+    let rho2 = x.mul_add(x, z * z);
     let (r, hole) = (R::splat(r), R::splat(hole));
-    let mut valid = !ray.d[1].same(R::zero()) & rho2.le(r * r) & (hole * hole).le(rho2);
-    if let Some(own) = own {
-        valid = valid & !own.here;
-    }
+    let valid = is_met(ray, own) & rho2.le(r * r) & (hole * hole).le(rho2);
     visit.crossing(t, R::zero(), valid);
+}
+
+/// Rays neither along the plane nor from it.
+#[inline(always)]
+fn is_met<R: Real>(ray: &LocalRay<R>, own: Option<Own<R>>) -> R::Mask {
+    let crosses = !ray.d[1].same(R::zero());
+    match own {
+        Some(own) => crosses & !own.here,
+        None => crosses,
+    }
 }
 
 /// The point of the plane under `p`: exactly at level 0.

@@ -1,20 +1,22 @@
 //! The sphere; ellipsoids are spheres in a stretched frame.
 
-use super::quadric::{Quadric, roots};
+use super::quadric::{Coefficients, Quadric, on_side, roots};
 use super::{Point, SIDE, Visit};
 use crate::math::Real;
 use crate::math::real::{dot, each3};
-use crate::render::ray::{LocalRay, Own};
+use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// |p|² − r².
-pub(super) struct Ball<R> {
-    pub(super) r: R,
+pub(super) struct Ball {
+    pub(super) r: f64,
 }
 
-impl<R: Real> Quadric<R> for Ball<R> {
+impl Quadric for Ball {
     #[inline(always)]
-    fn coefficients(&self, m: [R; 3], d: [R; 3]) -> (R, R, R) {
-        (dot(d, d), dot(m, d), dot(m, m) - self.r * self.r)
+    fn coefficients<R: Real>(&self, m: [R; 3], d: [R; 3]) -> Coefficients<R> {
+        let (a, m2) = (dot(d, d), dot(m, m));
+        let r2 = R::splat(self.r) * R::splat(self.r);
+        Coefficients { a, b: dot(m, d), c: m2 - r2, sizes: [a, m2 + r2] }
     }
 }
 
@@ -22,15 +24,10 @@ impl<R: Real> Quadric<R> for Ball<R> {
 #[inline(always)]
 pub(super) fn crossings<R: Real>(r: f64, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let part = R::splat(SIDE);
-    let x = roots(ray, &Ball { r: R::splat(r) });
-    let (mut near, mut far) = (x.real, x.real);
-    if let Some(own) = own {
-        let nearest_is_lo = x.lo.abs().lt(x.hi.abs());
-        near = near & !(own.here & nearest_is_lo);
-        far = far & !(own.here & !nearest_is_lo);
-    }
-    visit.crossing(x.lo, part, near);
-    visit.crossing(x.hi, part, far);
+    let x = roots(ray, ray.nearest(), &Ball { r }, on_side(&own, SIDE));
+    let (way_in, t_out, way_out) = convex_exit(&own, x.real, x.hi.t, x.real);
+    visit.crossing(x.lo.t, part, way_in);
+    visit.crossing(t_out, part, way_out);
 }
 
 /// The point of the sphere under `p`.

@@ -5,7 +5,7 @@
 //! place of their double-precision fallback.
 
 use super::{Point, Visit};
-use crate::math::real::{axpy, difference_of_products, each3, minus, scaled, splat3, three};
+use crate::math::real::{axpy, each3, minus, scaled, splat3, three};
 use crate::math::{Mask, Real};
 use crate::render::ray::Own;
 
@@ -45,14 +45,27 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let shear = |v: [R; 3]| ((-sx).mul_add(v[2], v[0]), (-sy).mul_add(v[2], v[1]));
     let ((ax, ay), (bx, by), (cx, cy)) = (shear(a), shear(b), shear(c));
     let e = [
-        difference_of_products(cx, by, cy, bx),
-        difference_of_products(ax, cy, ay, cx),
-        difference_of_products(bx, ay, by, ax),
+        cx.difference_of_products(by, cy, bx),
+        ax.difference_of_products(cy, ay, cx),
+        bx.difference_of_products(ay, by, ax),
     ];
     let negative = e[0].lt(zero) | e[1].lt(zero) | e[2].lt(zero);
     let positive = zero.lt(e[0]) | zero.lt(e[1]) | zero.lt(e[2]);
     let det = e[0] + e[1] + e[2];
-    let hit = !(negative & positive) & !det.same(zero);
+    let mut hit = !(negative & positive) & !det.same(zero);
+    let on_edge = each3(e, |x| x.same(zero));
+    if (hit & (on_edge[0] | on_edge[1] | on_edge[2])).any() {
+        // As if the ray passed a little to the left and, less still, above: so of triangles that share the edge or corner,
+        // exactly one is met.
+        let clockwise = zero.lt(det);
+        let ours = |(px, py): (R, R), (qx, qy): (R, R)| {
+            let (up, down) = (py.lt(qy), qy.lt(py));
+            let (left, right) = (py.same(qy) & qx.lt(px), py.same(qy) & px.lt(qx));
+            (clockwise & (down | right)) | (!clockwise & (up | left))
+        };
+        let (a, b, c) = ((ax, ay), (bx, by), (cx, cy));
+        hit = hit & (!on_edge[0] | ours(b, c)) & (!on_edge[1] | ours(c, a)) & (!on_edge[2] | ours(a, b));
+    }
     // Weights before the sum: products of an edge's determinant with a length would leave the range that squares allow.
     let inverse = R::one() / det;
     let w = each3(e, |x| x * inverse);

@@ -4,11 +4,11 @@
 //! cap is read from that overlap by comparison alone, so side and cap can't leave a gap between them. Open shapes are
 //! the same with the caps left out.
 
-use super::quadric::{Quadric, roots};
+use super::quadric::{Coefficients, Crossing, Quadric, on_side, roots};
 use super::{BOTTOM, Point, SIDE, TOP, Visit};
 use crate::math::Real;
 use crate::math::real::three;
-use crate::render::ray::{LocalRay, Own};
+use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// A profile: at height y the radius is `radius + slope·y`, for y from `bottom` to `top`. Nowhere in between negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,73 +25,68 @@ pub struct Tube {
     pub caps: bool,
 }
 
-/// x² + z² − (radius + slope·y)².
-struct Profile<R> {
-    radius: R,
-    slope: R,
-}
-
-impl<R: Real> Quadric<R> for Profile<R> {
+impl Quadric for Tube {
+    /// Of x² + z² − (radius + slope·y)².
     #[inline(always)]
-    fn coefficients(&self, m: [R; 3], d: [R; 3]) -> (R, R, R) {
-        let w = self.slope.mul_add(m[1], self.radius);
-        let s = self.slope * d[1];
-        let a = d[0].mul_add(d[0], d[2].mul_sub(d[2], s * s));
-        let b = m[0].mul_add(d[0], m[2].mul_sub(d[2], w * s));
-        let c = m[0].mul_add(m[0], m[2].mul_sub(m[2], w * w));
-        (a, b, c)
+    fn coefficients<R: Real>(&self, m: [R; 3], d: [R; 3]) -> Coefficients<R> {
+        let slope = R::splat(self.slope);
+        let w = slope.mul_add(m[1], R::splat(self.radius));
+        let s = slope * d[1];
+        let (d2, m2) = (d[0].mul_add(d[0], d[2] * d[2]), m[0].mul_add(m[0], m[2] * m[2]));
+        Coefficients {
+            a: d[0].mul_add(d[0], d[2].mul_sub(d[2], s * s)),
+            b: m[0].mul_add(d[0], m[2].mul_sub(d[2], w * s)),
+            c: m[0].mul_add(m[0], m[2].mul_sub(m[2], w * w)),
+            sizes: [s.mul_add(s, d2), w.mul_add(w, m2)],
+        }
     }
 }
 
 /// Calls `visit(t, part, valid)` for the way in and the way out.
 #[inline(always)]
 pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
-    let (zero, infinity) = (R::zero(), R::splat(f64::INFINITY));
-    let x = roots(ray, &Profile { radius: R::splat(tube.radius), slope: R::splat(tube.slope) });
+    let zero = R::zero();
+    let nearest = ray.nearest();
+    let x = roots(ray, nearest, tube, on_side(&own, SIDE));
 
-    // Between the planes.
-    let (o, dy) = (ray.o[1], ray.d[1]);
+    // Between the planes. Crossings are compared by τ, which is as good from afar; t is taken from the ray's own origin.
+    let (dy, m) = (ray.d[1], nearest.1[1]);
     let (bottom, top) = (R::splat(tube.bottom), R::splat(tube.top));
-    let to_bottom = (bottom - o) - ray.o_lo[1];
-    let to_top = (top - o) - ray.o_lo[1];
+    let (to_bottom, to_top) = (ray.way_to(1, bottom), ray.way_to(1, top));
     let up = zero.lt(dy);
     let level = dy.same(zero);
     let level_inside = to_bottom.le(zero) & zero.le(to_top);
-    let (tb, tt) = (to_bottom / dy, to_top / dy);
-    let slab_in = R::select(level, -infinity, R::select(up, tb, tt));
-    let slab_out = R::select(level, infinity, R::select(up, tt, tb));
+    let at_bottom = Crossing { tau: (bottom - m) / dy, t: to_bottom / dy };
+    let at_top = Crossing { tau: (top - m) / dy, t: to_top / dy };
+    let (before_all, after_all) = (Crossing::never(-1.0), Crossing::never(1.0));
+    let slab_in = Crossing::select(level, before_all, Crossing::select(up, at_bottom, at_top));
+    let slab_out = Crossing::select(level, after_all, Crossing::select(up, at_top, at_bottom));
 
     // Inside the quadric: between the roots, or, where the form falls off in both directions, on the half-line that lies
     // on our side of the apex: the one that overlaps the slab.
     let steep = x.a.lt(zero);
-    let before = (slab_out - x.hi).lt(x.lo - slab_in);
-    let side_in = R::select(steep, R::select(before, -infinity, x.hi), x.lo);
-    let side_out = R::select(steep, R::select(before, x.lo, infinity), x.hi);
-    let side_in = R::select(x.always_inside, -infinity, side_in);
-    let side_out = R::select(x.always_inside, infinity, side_out);
+    let before = (slab_out.tau - x.hi.tau).lt(x.lo.tau - slab_in.tau);
+    let side_in = Crossing::select(steep, Crossing::select(before, before_all, x.hi), x.lo);
+    let side_out = Crossing::select(steep, Crossing::select(before, x.lo, after_all), x.hi);
+    let side_in = Crossing::select(x.always_inside, before_all, side_in);
+    let side_out = Crossing::select(x.always_inside, after_all, side_out);
 
-    let in_by_side = slab_in.le(side_in);
-    let out_by_side = side_out.le(slab_out);
-    let t_in = R::select(in_by_side, side_in, slab_in);
-    let t_out = R::select(out_by_side, side_out, slab_out);
-    let crosses = (x.real | x.always_inside) & t_in.le(t_out) & (!level | level_inside);
+    let in_by_side = slab_in.tau.le(side_in.tau);
+    let out_by_side = side_out.tau.le(slab_out.tau);
+    let enter = Crossing::select(in_by_side, side_in, slab_in);
+    let leave = Crossing::select(out_by_side, side_out, slab_out);
+    let crosses = (x.real | x.always_inside) & enter.tau.le(leave.tau) & (!level | level_inside);
 
     let (side, low, high) = (R::splat(SIDE), R::splat(BOTTOM), R::splat(TOP));
     let part_in = R::select(in_by_side, side, R::select(up, low, high));
     let part_out = R::select(out_by_side, side, R::select(up, high, low));
-    let (mut way_in, mut way_out) = (crosses, crosses);
+    let t_out = R::select(crosses, leave.t, zero); // of a ray that starts on it, but seems beside it: the nearest
+    let (mut way_in, t_out, mut way_out) = convex_exit(&own, crosses, t_out, crosses);
     if !tube.caps {
         way_in = way_in & in_by_side;
         way_out = way_out & out_by_side;
     }
-    if let Some(own) = own {
-        let own_root = R::select(x.lo.abs().lt(x.hi.abs()), x.lo, x.hi);
-        let on_side = own.on(side);
-        let on_cap = own.here & !on_side;
-        way_in = way_in & !(on_side & in_by_side & side_in.same(own_root)) & !(on_cap & own.part.same(part_in));
-        way_out = way_out & !(on_side & out_by_side & side_out.same(own_root)) & !(on_cap & own.part.same(part_out));
-    }
-    visit.crossing(t_in, part_in, way_in);
+    visit.crossing(enter.t, part_in, way_in);
     visit.crossing(t_out, part_out, way_out);
 }
 
@@ -128,11 +123,12 @@ pub(super) fn point<R: Real>(tube: &Tube, p: [R; 3], part: R) -> Point<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::real::Bool;
 
     fn hits(tube: &Tube, o: [f64; 3], d: [f64; 3]) -> Vec<(f64, f64)> {
         let mut out = Vec::new();
         let ray = LocalRay { o, o_lo: [0.0; 3], d };
-        crossings(tube, &ray, None, &mut |t: f64, part: f64, ok: crate::math::real::Bool| {
+        crossings(tube, &ray, None, &mut |t: f64, part: f64, ok: Bool| {
             if ok.0 && t > 0.0 {
                 out.push((t, part));
             }
@@ -168,8 +164,8 @@ mod tests {
         let o = [1.0, 1.0, 0.0];
         let ray = LocalRay { o, o_lo: [0.0; 3], d: [-1.0, 0.0, 0.0] };
         let mut left = Vec::new();
-        let own = Own { here: crate::math::real::Bool(true), part: SIDE };
-        crossings(&CAN, &ray, Some(own), &mut |t: f64, _: f64, ok: crate::math::real::Bool| {
+        let own = Own { here: Bool(true), part: SIDE, outward: Bool(false) };
+        crossings(&CAN, &ray, Some(own), &mut |t: f64, _: f64, ok: Bool| {
             if ok.0 {
                 left.push(t);
             }
