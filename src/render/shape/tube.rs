@@ -50,10 +50,9 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let x = roots(ray, nearest, tube, on_side(&own, SIDE));
 
     // Between the planes. Crossings are compared by τ, which is as good from afar; t is taken from the ray's own origin.
-    let (o, dy, m) = (ray.o[1], ray.d[1], nearest.1[1]);
+    let (dy, m) = (ray.d[1], nearest.1[1]);
     let (bottom, top) = (R::splat(tube.bottom), R::splat(tube.top));
-    let to_bottom = (bottom - o) - ray.o_lo[1];
-    let to_top = (top - o) - ray.o_lo[1];
+    let (to_bottom, to_top) = (ray.way_to(1, bottom), ray.way_to(1, top));
     let up = zero.lt(dy);
     let level = dy.same(zero);
     let level_inside = to_bottom.le(zero) & zero.le(to_top);
