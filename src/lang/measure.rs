@@ -1,7 +1,7 @@
 //! Whether what a scene is made of has a size and a place that can be traced, where all transforms around it put it.
 
 use super::value::number_text;
-use crate::math::Affine;
+use crate::math::{Affine, Real};
 use crate::scene::{Shape, range};
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ pub fn misplaced(shape: &Shape, world_from_object: &Affine) -> Option<(String, &
     let m = world_from_object.linear_f64();
     let column = |c: usize| DVec3::new(m[0][c], m[1][c], m[2][c]).abs().max_element();
     let (a, b, c) = (column(0), column(1), column(2));
-    let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+    let (least, most) = (Real::min(a, Real::min(b, c)), Real::max(a, Real::max(b, c)));
     let usable = |x: f64| x.is_finite() && range::is_supported(x) && x != 0.0;
     if !usable(least) || !usable(most) || world_from_object.inverse().is_none() {
         return Some(("is scaled beyond all measure".into(), LENGTHS));
@@ -29,8 +29,9 @@ pub fn misplaced(shape: &Shape, world_from_object: &Affine) -> Option<(String, &
     if small * least < range::SMALLEST {
         return Some((format!("is too small: about {}", number_text(small * least)), LENGTHS));
     }
-    let far = points.iter().map(|p| world_from_object.apply(*p).abs().max_element()).fold(large * most, f64::max);
-    if far > range::LARGEST || !far.is_finite() {
+    // What isn't finite has no largest element.
+    let fits = |p: DVec3| p.is_finite() && p.abs().max_element() <= range::LARGEST;
+    if !(large * most <= range::LARGEST && points.iter().all(|p| fits(world_from_object.apply(*p)))) {
         return Some(("is too large or too far away".into(), LENGTHS));
     }
     None
@@ -39,7 +40,8 @@ pub fn misplaced(shape: &Shape, world_from_object: &Affine) -> Option<(String, &
 /// Why a light can't shine where it stands.
 pub fn misplaced_light(at: DVec3, world_from_object: &Affine) -> Option<(String, &'static str)> {
     let at = world_from_object.apply(at);
-    (!(at.abs().max_element() <= range::LARGEST) || !at.is_finite()).then(|| ("is too far away".into(), LENGTHS))
+    let fits = at.is_finite() && at.abs().max_element() <= range::LARGEST;
+    (!fits).then(|| ("is too far away".into(), LENGTHS))
 }
 
 /// Whether a map from the space of one pattern to that of another is one of numbers.
@@ -59,13 +61,13 @@ fn is_flattened(mut m: [[f64; 3]; 3]) -> bool {
     const NOTHING_LEFT: f64 = 1e4 * f64::EPSILON;
     // Each round brings rows and columns nearer to 1; three are enough for an order of magnitude.
     for _ in 0..3 {
-        for i in 0..3 {
-            let row = m[i].iter().fold(0.0, |a: f64, x| if x.abs() > a { x.abs() } else { a });
-            m[i] = m[i].map(|x| x / row);
+        for row in &mut m {
+            let largest = row.iter().fold(0.0, |a: f64, x| if x.abs() > a { x.abs() } else { a });
+            *row = row.map(|x| x / largest);
         }
         for i in 0..3 {
-            let column = m.iter().fold(0.0, |a: f64, r| if r[i].abs() > a { r[i].abs() } else { a });
-            m.iter_mut().for_each(|r| r[i] /= column);
+            let largest = m.iter().fold(0.0, |a: f64, r| if r[i].abs() > a { r[i].abs() } else { a });
+            m.iter_mut().for_each(|r| r[i] /= largest);
         }
     }
     let [a, b, c] = m.map(DVec3::from_array);
@@ -88,10 +90,10 @@ fn surely_placed(shape: &Shape, world_from_object: &Affine) -> bool {
     // Rows of size 1: the determinant's rounding error is a few 1e-16.
     let [a, b, c] = [0, 1, 2].map(|r| DVec3::from_array(m[r].map(|x| x / rows[r])));
     let (points, small, large) = extent(shape);
-    let far = points.iter().map(|p| size(p.to_array())).fold(large, f64::max);
+    let far = points.iter().map(|p| size(p.to_array())).fold(large, Real::max);
     let reach = 3.0 * size(rows) * far + size(world_from_object.shift_f64());
     a.cross(b).dot(c).abs() > 1e-9
-        && small * columns[0].min(columns[1]).min(columns[2]) >= range::SMALLEST * ROOM
+        && small * columns.into_iter().fold(f64::INFINITY, Real::min) >= range::SMALLEST * ROOM
         && reach <= range::LARGEST / ROOM
 }
 
@@ -99,16 +101,16 @@ fn surely_placed(shape: &Shape, world_from_object: &Affine) -> bool {
 fn extent(shape: &Shape) -> ([DVec3; 4], f64, f64) {
     let edges = |p: &[DVec3]| {
         let sizes = p.iter().skip(1).map(|q| (*q - p[0]).abs().max_element());
-        sizes.fold((f64::INFINITY, 0f64), |(lo, hi), s| (lo.min(s), hi.max(s)))
+        sizes.fold((f64::INFINITY, 0f64), |(lo, hi), s| (Real::min(lo, s), Real::max(hi, s)))
     };
-    let tube = |from: DVec3, to: DVec3, r: f64| ([from, to, to, to], r.min((to - from).abs().max_element()), r);
+    let tube = |from: DVec3, to: DVec3, r: f64| ([from, to, to, to], Real::min(r, (to - from).abs().max_element()), r);
     match shape {
         Shape::Sphere { at, r } => ([*at; 4], *r, *r),
         Shape::Plane { through, .. } => ([*through; 4], 1.0, 1.0),
         Shape::Box { from, to } => ([*from, *to, *to, *to], (*to - *from).min_element(), (*to - *from).max_element()),
         Shape::Disc { at, r, .. } => ([*at; 4], *r, *r),
         Shape::Cylinder { from, to, r, .. } => tube(*from, *to, *r),
-        Shape::Cone { from, to, r, top, .. } => tube(*from, *to, r.max(*top)),
+        Shape::Cone { from, to, r, top, .. } => tube(*from, *to, Real::max(*r, *top)),
         Shape::Torus { at, r, tube, .. } => ([*at; 4], *tube, r + tube),
         Shape::Triangle { points, .. } => {
             let (lo, hi) = edges(points);

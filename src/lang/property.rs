@@ -284,8 +284,11 @@ pub(super) fn amount(name: &str, value: &Value, build: &Build) -> Result<(), Box
     if size <= range::BRIGHTEST {
         return Ok(());
     }
-    let found = if let Value::Pattern(_) = value { "it can reach" } else { "got" };
-    let (size, most) = (number_text(size), number_text(range::BRIGHTEST));
-    Err(Fault::new(format!("`{name}` is outside the supported amounts of light, {found} {size}"))
+    let found = match value {
+        Value::Pattern(_) => format!("it can reach {}", number_text(size)),
+        _ => format!("got {}", value.show(60)),
+    };
+    let most = number_text(range::BRIGHTEST);
+    Err(Fault::new(format!("`{name}` is outside the supported amounts of light, {found}"))
         .note(format!("an amount of light is at most {most} in size; 1 is the brightest that a picture shows")))
 }

@@ -1,6 +1,7 @@
 //! What the channels of a pattern can be, found from what it is made of: so that one whose values leave the numbers, or are
 //! no amounts of light, is an error of the text and not a hole in the picture.
 
+use crate::math::Real;
 use crate::scene::{Color, PatternId, PatternKind};
 
 /// All values from `least` to `most`. Rounding isn't counted: the limits that it is held against are round numbers.
@@ -45,11 +46,11 @@ impl Values {
 
     /// The largest size of any of them.
     pub fn size(self) -> f64 {
-        larger(-self.least, self.most)
+        Real::max(-self.least, self.most)
     }
 
     fn or(self, o: Values) -> Values {
-        Values { least: smaller(self.least, o.least), most: larger(self.most, o.most) }
+        Values { least: Real::min(self.least, o.least), most: Real::max(self.most, o.most) }
     }
     fn plus(self, o: Values) -> Values {
         Values { least: self.least + o.least, most: self.most + o.most }
@@ -67,16 +68,6 @@ impl Values {
         let rest = Values { least: 1.0 - by.most, most: 1.0 - by.least };
         rest.times(self).plus(by.times(o))
     }
-}
-
-/// The smaller of two numbers, neither NaN.
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers, neither NaN.
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Writes scenes that nobody would: numbers from the edges of what there is, shapes that touch, coincide and nest.
 
+use rtdsl::math::fun::pow;
 use rtdsl::math::hash::KeyedHash;
 
 /// Draws numbers, the same for the same case.
@@ -30,6 +31,10 @@ impl Dice {
     fn below(&mut self, n: usize) -> usize {
         (self.unit() * n as f64) as usize
     }
+    /// A power of ten, up or down by as many as `most` decades.
+    fn decade(&mut self, most: f64) -> f64 {
+        pow(10.0, (self.even() * most).trunc())
+    }
     fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
         all[self.below(all.len())]
     }
@@ -37,9 +42,31 @@ impl Dice {
 
 /// Texts of numbers at which programs break. Some are errors wherever they stand.
 const NASTY: [&str; 25] = [
-    "0", "-0", "0.0", "1", "-1", "0.5", "2", "1e-140", "-1e-140", "1e140", "-1e140", "1.0000000000000002", "0.9999999999999999",
-    "9007199254740993", "1e-141", "1e141", "5e-324", "2.3e-308", "1e-310", "1e308", "0/0", "1/0", "1e300*1e300",
-    "1e-200*1e-200", "3e-140*0.4",
+    "0",
+    "-0",
+    "0.0",
+    "1",
+    "-1",
+    "0.5",
+    "2",
+    "1e-140",
+    "-1e-140",
+    "1e140",
+    "-1e140",
+    "1.0000000000000002",
+    "0.9999999999999999",
+    "9007199254740993",
+    "1e-141",
+    "1e141",
+    "5e-324",
+    "2.3e-308",
+    "1e-310",
+    "1e308",
+    "0/0",
+    "1/0",
+    "1e300*1e300",
+    "1e-200*1e-200",
+    "3e-140*0.4",
 ];
 /// How many of them are lengths.
 const SUPPORTED: usize = 14;
@@ -83,8 +110,8 @@ impl Writer {
         let wild = dice.one_of(&[0.0, 0.0, 0.02, 0.1, 0.4]);
         let nasty = if dice.chance(0.5) { &NASTY[..SUPPORTED] } else { &NASTY[..] };
         let scale = match dice.below(4) {
-            0 => 10f64.powi((dice.even() * 139.0) as i32),
-            1 => 10f64.powi((dice.even() * 9.0) as i32),
+            0 => dice.decade(139.0),
+            1 => dice.decade(9.0),
             _ => 1.0,
         };
         let mut w = Writer { dice, wild, nasty, scale, numbers: Vec::new(), points: vec!["[0, 0, 0]".into()] };
@@ -109,11 +136,21 @@ impl Writer {
         let precision = if self.dice.chance(0.15) { ", precision: \"f32\"" } else { "" };
         let mut head = vec![format!("render(size: [8, 6], depth: {depth}{aa}{precision})")];
         if self.dice.chance(0.9) {
-            let (from, at) = (self.point(), self.point());
+            // Towards something, as a rule.
+            let at = self.point();
+            let from = if self.dice.chance(0.6) {
+                let away = [(); 3].map(|()| self.dice.even() * 8.0 * self.scale);
+                format!("{at} + [{:e}, {:e}, {:e}]", away[0], away[1], away[2])
+            } else {
+                self.point()
+            };
             let up = if self.dice.chance(0.3) { format!(", up: {}", self.direction()) } else { String::new() };
             let lens = match self.dice.below(5) {
                 0 => format!(", height: {}", self.length()),
-                1 => format!(", fov: {}deg", self.one(&["1e-140", "5e-324", "1e-9", "179.99999999999997", "179", "90", "0"])),
+                1 => format!(
+                    ", fov: {}deg",
+                    self.one(&["1e-140", "5e-324", "1e-9", "179.99999999999997", "179", "90", "0"])
+                ),
                 2 => format!(", fov: {}deg", (self.dice.unit() * 180.0)),
                 _ => String::new(),
             };
@@ -143,7 +180,7 @@ impl Writer {
         }
         let x = match self.dice.below(12) {
             0 => 0.0,
-            1 => 10f64.powi((self.dice.even() * 12.0) as i32) * self.dice.even(),
+            1 => self.dice.decade(12.0) * self.dice.even(),
             2..6 => (self.dice.even() * 4.0).round(),
             _ => self.dice.even() * 4.0,
         };
@@ -181,7 +218,14 @@ impl Writer {
 
     fn direction(&mut self) -> String {
         match self.dice.below(3) {
-            0 => self.one(&["[1, 0, 0]", "[0, 1, 0]", "[0, 0, -1]", "[0, -1, -0]", "[1e-140, 1e140, 0]", "[1, 1e-20, 0]"]),
+            0 => self.one(&[
+                "[1, 0, 0]",
+                "[0, 1, 0]",
+                "[0, 0, -1]",
+                "[0, -1, -0]",
+                "[1e-140, 1e140, 0]",
+                "[1, 1e-20, 0]",
+            ]),
             _ => self.point(),
         }
     }
@@ -261,7 +305,11 @@ impl Writer {
         match self.dice.below(8) {
             0 => format!("scale({})", self.factor()),
             1 => format!("scale([{}, {}, {}])", self.factor(), self.factor(), self.factor()),
-            2 => format!("rotate({}: {}deg)", self.one(&["x", "y", "z"]), self.one(&["90", "30", "1e-9", "-0", "45", "180"])),
+            2 => format!(
+                "rotate({}: {}deg)",
+                self.one(&["x", "y", "z"]),
+                self.one(&["90", "30", "1e-9", "-0", "45", "180"])
+            ),
             3 => format!("rotate(axis: {}, angle: {}deg)", self.direction(), self.dice.even() * 400.0),
             4 => format!("rotate(y: {}deg)", self.number()),
             _ => format!("move({})", self.point()),
@@ -271,7 +319,7 @@ impl Writer {
     fn factor(&mut self) -> String {
         match self.dice.below(8) {
             0 => self.number(),
-            1 => format!("{:e}", 10f64.powi((self.dice.even() * 60.0) as i32)),
+            1 => format!("{:e}", self.dice.decade(60.0)),
             2 => self.one(&["1", "-1", "2", "0.5", "1e-20", "1e20"]),
             _ => format!("{:e}", self.dice.unit() * 2.0 + 0.1),
         }
@@ -308,7 +356,12 @@ impl Writer {
             7 => format!("cylinder(from: {}, to: {}, r: {}, caps: {caps}", self.point(), self.point(), self.length()),
             8 | 9 => {
                 let top = if self.dice.chance(0.5) { self.length() } else { "0".into() };
-                format!("cone(from: {}, to: {}, r: {}, top: {top}, caps: {caps}", self.point(), self.point(), self.length())
+                format!(
+                    "cone(from: {}, to: {}, r: {}, top: {top}, caps: {caps}",
+                    self.point(),
+                    self.point(),
+                    self.length()
+                )
             }
             10 => {
                 let r = self.length();

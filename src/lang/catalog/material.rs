@@ -6,8 +6,8 @@ use crate::lang::ops;
 use crate::lang::property::amount;
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Param, Run, Ty, Word, optional, required};
-use crate::scene::{Material, range};
 use crate::scene::material::MaterialDefaults as D;
+use crate::scene::{Material, range};
 
 /// The slots, for `phong` and for `.with`.
 pub const SLOTS: &[Param] = &[
@@ -18,7 +18,9 @@ pub const SLOTS: &[Param] = &[
     optional("diffuse", Ty::Paint, Default::Number(D::DIFFUSE), "how much of the lights' light it scatters")
         .at_least(0.0)
         .light(),
-    optional("specular", Ty::Paint, Default::Number(D::SPECULAR), "how strong its highlights are").at_least(0.0).light(),
+    optional("specular", Ty::Paint, Default::Number(D::SPECULAR), "how strong its highlights are")
+        .at_least(0.0)
+        .light(),
     optional("shininess", Ty::NumberPaint, Default::Number(D::SHININESS), "how small its highlights are")
         .within(0.0, range::SHINIEST),
     optional("reflect", Ty::Paint, Default::Number(D::REFLECT), "how much it mirrors").at_least(0.0).light(),

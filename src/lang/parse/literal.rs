@@ -23,7 +23,11 @@ impl Builder<'_> {
             return self.make(span, 0, ExprKind::Number(value));
         };
         let angle = |degrees: f64| {
-            if degrees.is_finite() { Ok(ExprKind::Angle(degrees)) } else { Err(too_large().note("angles are kept in degrees")) }
+            if degrees.is_finite() {
+                Ok(ExprKind::Angle(degrees))
+            } else {
+                Err(too_large().note("angles are kept in degrees"))
+            }
         };
         let kind = match unit.as_str() {
             "deg" => ExprKind::Angle(value),
