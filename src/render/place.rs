@@ -1,7 +1,7 @@
 //! Puts a shape of the scene into the world: finds its frame, its size there, its box, and the way back to the space in
 //! which it was made.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use super::shape::{Kind, Ring, Tube};
 use crate::math::affine::reciprocal_power;
 use crate::math::{Affine, Dd};
@@ -207,7 +207,7 @@ fn triangle(points: [DVec3; 3], normals: Option<[DVec3; 3]>, world: &Affine) -> 
     for (r, (x, y)) in e1.to_array().into_iter().zip(e2.to_array()).enumerate() {
         made.linear[r] = [Dd::new(x), Dd::new(0.0), Dd::new(y)];
     }
-    let scale = largest(e1).max(largest(e2));
+    let scale = larger(largest(e1), largest(e2));
     let n = (e1 / scale).cross(e2 / scale);
     Placed {
         form: Form::Triangle(v, to_world(n), normals.map(|ns| ns.map(to_world))),
