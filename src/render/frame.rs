@@ -75,27 +75,26 @@ impl Frame {
             let (hi, lo) = o[i].two_sum(c);
             (hi, lo + c_lo)
         });
+        let d_lo = [R::zero(); 3];
+        let renamed = |a: usize, b: usize, c: usize| LocalRay {
+            o: [f[a].0, f[b].0, f[c].0],
+            o_lo: [f[a].1, f[b].1, f[c].1],
+            d: [d[a], d[b], d[c]],
+            d_lo,
+        };
         match self.axes {
-            Axes::Cyclic(0) => LocalRay { o: each3(f, |x| x.0), o_lo: each3(f, |x| x.1), d },
-            Axes::Cyclic(1) => {
-                LocalRay { o: [f[1].0, f[2].0, f[0].0], o_lo: [f[1].1, f[2].1, f[0].1], d: [d[1], d[2], d[0]] }
-            }
-            Axes::Cyclic(_) => {
-                LocalRay { o: [f[2].0, f[0].0, f[1].0], o_lo: [f[2].1, f[0].1, f[1].1], d: [d[2], d[0], d[1]] }
-            }
+            Axes::Cyclic(0) => renamed(0, 1, 2),
+            Axes::Cyclic(1) => renamed(1, 2, 0),
+            Axes::Cyclic(_) => renamed(2, 0, 1),
             Axes::Linear(m) => {
                 let rows = &maps[m as usize].local_from_world;
-                let mut out = LocalRay { o: d, o_lo: d, d };
+                let (from, from_lo) = (each3(f, |x| x.0), each3(f, |x| x.1));
+                let mut out = LocalRay { o: d, o_lo: d, d, d_lo };
                 for (r, row) in rows.iter().enumerate() {
                     let a = splat3::<R>(*row);
-                    let (s0, e0) = a[0].two_prod(f[0].0);
-                    let (p1, e1) = a[1].two_prod(f[1].0);
-                    let (p2, e2) = a[2].two_prod(f[2].0);
-                    let (s1, g1) = s0.two_sum(p1);
-                    let (s2, g2) = s1.two_sum(p2);
-                    out.o[r] = s2;
-                    out.o_lo[r] = ((e0 + e1) + (e2 + g1)) + (g2 + dot(a, each3(f, |x| x.1)));
-                    out.d[r] = dot(a, d);
+                    let (o, o_lo) = long_dot(a, from);
+                    (out.o[r], out.o_lo[r]) = (o, o_lo + dot(a, from_lo));
+                    (out.d[r], out.d_lo[r]) = long_dot(a, d);
                 }
                 out
             }
@@ -152,6 +151,17 @@ impl Frame {
         // Of the centre: its low part, the sum with it, the addition that follows.
         three(|i| spread[i] + R::splat(3.0 * u * self.centre[i].abs()))
     }
+}
+
+/// The dot product and what its rounding leaves out (Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 2005: Dot2).
+#[inline(always)]
+fn long_dot<R: Real>(a: [R; 3], b: [R; 3]) -> (R, R) {
+    let (s0, e0) = a[0].two_prod(b[0]);
+    let (p1, e1) = a[1].two_prod(b[1]);
+    let (p2, e2) = a[2].two_prod(b[2]);
+    let (s1, g1) = s0.two_sum(p1);
+    let (s2, g2) = s1.two_sum(p2);
+    (s2, ((e0 + e1) + (e2 + g1)) + g2)
 }
 
 fn cyclic_rows(k: u8) -> [[f64; 3]; 3] {

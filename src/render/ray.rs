@@ -10,8 +10,10 @@ pub struct LocalRay<R> {
     pub o: [R; 3],
     /// What `o` misses of the exact origin.
     pub o_lo: [R; 3],
-    /// Direction; any length but 0.
+    /// Direction, rounded; any length but 0.
     pub d: [R; 3],
+    /// What `d` misses of the exact direction: over a long way even that much turns a ray aside visibly.
+    pub d_lo: [R; 3],
 }
 
 impl<R: Real> LocalRay<R> {
@@ -26,21 +28,25 @@ impl<R: Real> LocalRay<R> {
     /// The point at `t`: one rounding on the large part, so nothing is lost to the distance of the origin.
     #[inline(always)]
     pub fn at(&self, t: R) -> [R; 3] {
-        three(|i| t.mul_add(self.d[i], self.o[i]) + self.o_lo[i])
+        three(|i| t.mul_add(self.d[i], self.o[i]) + t.mul_add(self.d_lo[i], self.o_lo[i]))
     }
 
-    /// The parameter of the line's point nearest to the frame's origin, rounded, and the line's point there, with what rounding
-    /// left out put back (TwoProd, TwoSum): from here a shape is judged as well as from near by, however far the ray
-    /// starts.
+    /// The parameter of the line's point nearest to the frame's origin, rounded, and the line's point [there](LocalRay::moved):
+    /// from here a shape is judged as well as from near by, however far the ray starts.
     #[inline(always)]
     pub fn nearest(&self) -> (R, [R; 3]) {
         let t0 = -(dot(self.o, self.d) / dot(self.d, self.d));
-        let m = three(|i| {
+        (t0, self.moved(t0))
+    }
+
+    /// The line's point at `t0`, with what rounding left out put back (TwoProd, TwoSum).
+    #[inline(always)]
+    pub fn moved(&self, t0: R) -> [R; 3] {
+        three(|i| {
             let (p, e) = t0.two_prod(self.d[i]);
             let (s, se) = self.o[i].two_sum(p);
-            s + (se + (e + self.o_lo[i]))
-        });
-        (t0, m)
+            s + (se + (e + t0.mul_add(self.d_lo[i], self.o_lo[i])))
+        })
     }
 }
 

@@ -4,6 +4,8 @@
 //! each beside the bound that it must keep. `cargo test` runs all of them in [`Size::Quick`], `rtdsl verify --extremes` in
 //! [`Size::Long`].
 
+mod contact;
+mod draw;
 mod enclosure;
 mod energy;
 mod histogram;
@@ -11,9 +13,15 @@ mod outcome;
 pub mod picture;
 mod picture_check;
 mod programme;
+pub mod quadric;
 mod reach;
+mod respawn;
+mod specimen;
 mod stage;
 mod tally;
+pub mod tangent;
+pub mod torus;
+mod watertight;
 
 pub use histogram::Histogram;
 pub use outcome::{Bound, Figure, Outcome};

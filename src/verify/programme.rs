@@ -1,11 +1,20 @@
 //! The list of all checks.
 
 use super::picture_check::{self, PictureCheck};
-use super::{Check, energy};
+use super::{Check, contact, enclosure, energy, quadric, respawn, tangent, torus, watertight};
 
 /// The checks of kernels and formulas, which need no scene.
 pub fn programme() -> Vec<Check> {
-    vec![energy::CHECK]
+    vec![
+        quadric::CHECK,
+        tangent::CHECK,
+        torus::CHECK,
+        watertight::CHECK,
+        respawn::CHECK,
+        contact::CHECK,
+        enclosure::CHECK,
+        energy::CHECK,
+    ]
 }
 
 /// The checks of whole pictures.

@@ -1,7 +1,7 @@
 //! Shares cases out among threads and adds up what they gave. Sums don't depend on who did which case, so every number of
 //! threads gives the same outcome.
 
-use super::Histogram;
+use super::{Bound, Figure, Histogram};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -67,10 +67,32 @@ impl Tally {
         self
     }
 
-    /// Mean of the errors.
-    pub(super) fn mean(&self) -> f64 {
-        self.sum / self.errors.count() as f64
+    /// The error that 99 of 100 don't exceed, with the histogram.
+    pub(super) fn p99(&self, what: String, at_most: f64) -> Figure {
+        let (value, bound) = (self.errors.quantile(0.99), Bound::AtMost(at_most));
+        Figure { what, value, unit: "ulp", bound, histogram: Some(self.errors.clone()) }
     }
+
+    /// Mean of the errors.
+    pub(super) fn mean(&self, what: String, at_most: f64) -> Figure {
+        let value = self.sum / self.errors.count() as f64;
+        Figure { what, value, unit: "ulp", bound: Bound::AtMost(at_most), histogram: None }
+    }
+
+    /// How often something went wrong: never, is the bound.
+    pub(super) fn never(&self, kind: usize, what: String) -> Figure {
+        count(what, self.wrong[kind], Bound::AtMost(0.0))
+    }
+
+    /// That as many were tried as the check speaks of.
+    pub(super) fn tried(&self, what: String, at_least: u64) -> Figure {
+        count(what, self.tried, Bound::AtLeast(at_least as f64))
+    }
+}
+
+/// A count as a figure.
+pub(super) fn count(what: String, n: u64, bound: Bound) -> Figure {
+    Figure { what, value: n as f64, unit: "", bound, histogram: None }
 }
 
 /// The distance from |x| to the next larger number: the unit in the last place. For 0 the smallest there is.

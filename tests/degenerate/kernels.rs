@@ -38,7 +38,7 @@ fn each_kernel(o: [f64; 3], d: [f64; 3], check: impl Fn(&str, Vec<f64>)) {
             });
             let primitive = Primitive { kind, frame, material: 0, space: Primitive::NO_SPACE };
             let tables = Tables { maps: &maps, triangles: &triangles };
-            for own in [None, Some(Own { here: Bool(true), part: 0.0 })] {
+            for own in [None, Some(Own { here: Bool(true), part: 0.0, outward: Bool(true) })] {
                 let mut met = Vec::new();
                 primitive.crossings::<f64, false>(tables, o, d, own, &mut |t: f64, _: f64, valid: Bool| {
                     // As every caller asks.

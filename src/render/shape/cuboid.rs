@@ -80,7 +80,7 @@ mod tests {
         let mut out = Vec::new();
         crossings(
             [1.0, 2.0, 3.0],
-            &LocalRay { o, o_lo: [0.0; 3], d },
+            &LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] },
             None,
             &mut |t: f64, part: f64, ok: crate::math::real::Bool| {
                 if ok.0 {

@@ -28,8 +28,8 @@ pub(super) fn disc_crossing<R: Real>(
     let t = t_at_level(ray);
     // Rounding t alone moves the point by an ulp of the distance, which far away is more than the disc: so the rest that the
     // rounded t leaves of the height goes on as a correction.
-    let rest = -((t.mul_add(ray.d[1], ray.o[1]) + ray.o_lo[1]) / ray.d[1]);
-    let across = |i: usize| t.mul_add(ray.d[i], ray.o[i]) + rest.mul_add(ray.d[i], ray.o_lo[i]);
+    let rest = -(ray.at(t)[1] / ray.d[1]);
+    let across = |i: usize| t.mul_add(ray.d[i], ray.o[i]) + rest.mul_add(ray.d[i], t.mul_add(ray.d_lo[i], ray.o_lo[i]));
     let (x, z) = (across(0), across(2));
     let rho2 = x.mul_add(x, z * z);
     let (r, hole) = (R::splat(r), R::splat(hole));

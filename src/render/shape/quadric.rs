@@ -71,8 +71,8 @@ pub struct Roots<R: Real> {
 /// is worth removing, too: no more than one ray in 2^40 comes so near to a tangent.
 const DOUBT: f64 = 4096.0;
 
-/// Solves for the crossings of `ray`'s line with `form` = 0, `nearest` being its point nearest to the frame's origin. Of rays
-/// that start on the quadric itself, the lanes of `own`, one root is exactly 0.
+/// Solves for the crossings of `ray`'s line with `form` = 0 from its point `m` at `t0`, which is near the shape. Of rays that
+/// start on the quadric itself, the lanes of `own`, one root is exactly 0.
 #[inline(always)]
 pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadric, own: Option<R::Mask>) -> Roots<R> {
     let (zero, d) = (R::zero(), ray.d);
@@ -122,17 +122,18 @@ fn pair<R: Real>(a: R, b: R, c: R, disc: R) -> (R, R) {
 /// The same roots from the ray's exact origin in a finer scalar, in the lanes of `doubt`.
 #[inline(always)]
 fn judged_again<R: Real>(ray: &LocalRay<R>, t0: R, form: &impl Quadric, doubt: R::Mask, rough: Roots<R>) -> Roots<R> {
-    let LocalRay { o, o_lo, d } = *ray;
-    let given = [o[0], o[1], o[2], o_lo[0], o_lo[1], o_lo[2], d[0], d[1], d[2], t0];
+    let LocalRay { o, o_lo, d, d_lo } = *ray;
+    let (l, e) = (o_lo, d_lo);
+    let given = [o[0], o[1], o[2], l[0], l[1], l[2], d[0], d[1], d[2], e[0], e[1], e[2], t0];
     let (one, zero) = (R::one(), R::zero());
     let real = R::select(rough.real, one, zero);
     let rough_numbers = [rough.lo.tau, rough.lo.t, rough.hi.tau, rough.hi.t, real];
     let [lo_tau, lo_t, hi_tau, hi_t, real] = R::again(doubt, given, rough_numbers, |v| {
-        let vector = |k: usize| three(|i| v[k + i]);
-        let exact = LocalRay { o: three(|i| v[i] + v[3 + i]), o_lo: [Real::zero(); 3], d: vector(6) };
+        let (whole, nothing) = (|k: usize| three(|i| v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
+        let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
         let x = roots(&exact, exact.nearest(), form, None);
         let real = Real::select(x.real, Real::one(), Real::zero());
-        [x.lo.t - v[9], x.lo.t, x.hi.t - v[9], x.hi.t, real]
+        [x.lo.t - v[12], x.lo.t, x.hi.t - v[12], x.hi.t, real]
     });
     Roots {
         lo: Crossing { tau: lo_tau, t: lo_t },
@@ -173,7 +174,7 @@ mod tests {
     use crate::render::shape::sphere::Ball;
 
     fn ray(o: [f64; 3], d: [f64; 3]) -> LocalRay<f64> {
-        LocalRay { o, o_lo: [0.0; 3], d }
+        LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] }
     }
 
     /// With the unit sphere.

@@ -35,8 +35,8 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
     let (zero, one) = (R::zero(), R::one());
     // 1 and -1 for rays that leave the ring to the outside and to the inside, 0 for those from elsewhere.
     let leaves = own.map_or(zero, |own| R::select(own.here, R::select(own.outward, one, -one), zero));
-    let LocalRay { o, o_lo: lo, d } = *ray;
-    let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], leaves];
+    let LocalRay { o, o_lo: lo, d, d_lo: e } = *ray;
+    let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], e[0], e[1], e[2], leaves];
     let found = R::each(given, |v| ring_crossings(ring, v));
     for k in 0..4 {
         visit.crossing(found[k], R::splat(SIDE), !found[4 + k].same(zero));
@@ -45,15 +45,15 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
 
 /// Four t and, for each, 1 where the line meets the ring there, else 0.
 #[inline(always)]
-fn ring_crossings<S: Single>(ring: &Ring, v: [S; 10]) -> [S; 8] {
+fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
     let to_unit = S::splat(ring.scale);
     let at = |i: usize| three(|k| v[i + k] * to_unit);
     let d = at(6);
     // The direction is brought to unit magnitude, too: its length is the world's, and its fourth power is needed.
     let longest = larger(d[0].magnitude(), larger(d[1].magnitude(), d[2].magnitude()));
     let k = S::splat(reciprocal_power(longest));
-    let ray = LocalRay { o: at(0), o_lo: at(3), d: each3(d, |x| x * k) };
-    let found = if v[9].same(S::zero()).any() { ring_roots(ring, &ray) } else { roots_from(ring, &ray, v[9]) };
+    let ray = LocalRay { o: at(0), o_lo: at(3), d: each3(d, |x| x * k), d_lo: each3(at(9), |x| x * k) };
+    let found = if v[12].same(S::zero()).any() { ring_roots(ring, &ray) } else { roots_from(ring, &ray, v[12]) };
     let mut out = [S::zero(); 8];
     for (i, (t, is_root)) in found.into_iter().enumerate() {
         out[i] = t * k; // from lengths of the shortened direction to those of the ray's
@@ -75,10 +75,10 @@ pub(super) fn point<R: Real>(ring: &Ring, p: [R; 3]) -> Point<R> {
     let n = each3(v, |x| x * scale);
     let tube = R::splat(ring.tube);
     let q = three(|i| tube.mul_add(n[i], c[i]));
-    // Circle 5 of r, tube 8 of its radius, their sum 1.
-    let u = R::UNIT_ROUNDOFF;
-    let error = R::splat(6.0 * u * ring.r + 9.0 * u * ring.tube);
-    Point { p: each3(q, |x| x * to_scene), n, error: [error * to_scene; 3] }
+    // By component, for both are stretched or shortened rather than turned: circle 5 of it, tube 8, their sum 1.
+    let (u6, u9) = (R::splat(6.0 * R::UNIT_ROUNDOFF), R::splat(9.0 * R::UNIT_ROUNDOFF));
+    let error = three(|i| (u6 * c[i].abs() + u9 * (tube * n[i]).abs()) * to_scene);
+    Point { p: each3(q, |x| x * to_scene), n, error }
 }
 
 /// Roots, and 1 for each that there is.
@@ -286,7 +286,7 @@ mod tests {
     const RING: Ring = Ring { r: 1.0, tube: 0.25, scale: 1.0 };
 
     fn roots(ring: &Ring, o: [f64; 3], d: [f64; 3]) -> Vec<f64> {
-        let found = ring_roots(ring, &LocalRay { o, o_lo: [0.0; 3], d });
+        let found = ring_roots(ring, &LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] });
         found.into_iter().filter(|x| x.1 == 1.0).map(|x| x.0).collect()
     }
 

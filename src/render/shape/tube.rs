@@ -46,18 +46,25 @@ impl Quadric for Tube {
 #[inline(always)]
 pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let zero = R::zero();
-    let nearest = ray.nearest();
-    let x = roots(ray, nearest, tube, on_side(&own, SIDE));
-
     // Between the planes. Crossings are compared by τ, which is as good from afar; t is taken from the ray's own origin.
-    let (dy, m) = (ray.d[1], nearest.1[1]);
+    let dy = ray.d[1];
     let (bottom, top) = (R::splat(tube.bottom), R::splat(tube.top));
     let (to_bottom, to_top) = (ray.way_to(1, bottom), ray.way_to(1, top));
     let up = zero.lt(dy);
     let level = dy.same(zero);
     let level_inside = to_bottom.le(zero) & zero.le(to_top);
-    let at_bottom = Crossing { tau: (bottom - m) / dy, t: to_bottom / dy };
-    let at_top = Crossing { tau: (top - m) / dy, t: to_top / dy };
+    let (t_bottom, t_top) = (to_bottom / dy, to_top / dy);
+    // Seen from the line's point nearest to the axis, but between the planes: however slim the shape is, that point is as near
+    // to where it is crossed as the shape is wide. From the point nearest to the frame's origin, a slim shape's two sides
+    // are a small difference of large numbers.
+    let t_axis = -(ray.o[0].mul_add(ray.d[0], ray.o[2] * ray.d[2]) / ray.d[0].mul_add(ray.d[0], ray.d[2] * ray.d[2]));
+    let within = t_axis.min(t_bottom.max(t_top)).max(t_bottom.min(t_top));
+    let t0 = R::select(level, t_axis, within);
+    let from = ray.moved(t0);
+    let x = roots(ray, (t0, from), tube, on_side(&own, SIDE));
+    let m = from[1];
+    let at_bottom = Crossing { tau: (bottom - m) / dy, t: t_bottom };
+    let at_top = Crossing { tau: (top - m) / dy, t: t_top };
     let (before_all, after_all) = (Crossing::never(-1.0), Crossing::never(1.0));
     let slab_in = Crossing::select(level, before_all, Crossing::select(up, at_bottom, at_top));
     let slab_out = Crossing::select(level, after_all, Crossing::select(up, at_top, at_bottom));
@@ -127,7 +134,7 @@ mod tests {
 
     fn hits(tube: &Tube, o: [f64; 3], d: [f64; 3]) -> Vec<(f64, f64)> {
         let mut out = Vec::new();
-        let ray = LocalRay { o, o_lo: [0.0; 3], d };
+        let ray = LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] };
         crossings(tube, &ray, None, &mut |t: f64, part: f64, ok: Bool| {
             if ok.0 && t > 0.0 {
                 out.push((t, part));
@@ -162,7 +169,7 @@ mod tests {
     #[test]
     fn own_crossing_is_taken_out() {
         let o = [1.0, 1.0, 0.0];
-        let ray = LocalRay { o, o_lo: [0.0; 3], d: [-1.0, 0.0, 0.0] };
+        let ray = LocalRay { o, o_lo: [0.0; 3], d: [-1.0, 0.0, 0.0], d_lo: [0.0; 3] };
         let mut left = Vec::new();
         let own = Own { here: Bool(true), part: SIDE, outward: Bool(false) };
         crossings(&CAN, &ray, Some(own), &mut |t: f64, _: f64, ok: Bool| {
