@@ -43,7 +43,7 @@ pub trait Real:
     /// One value of this kind alone, in which is computed what branches too much for masks: for lanes, `f64`.
     type Single: Single;
     /// A more exact scalar, for the few cases that hang on the last bits: of machine numbers, double-double.
-    type Fine: Real;
+    type Fine: Single;
     /// Half an ulp of 1 in this precision.
     const UNIT_ROUNDOFF: f64;
     /// The smallest positive normal number: nothing but "more than 0", whatever the scene's scale.

@@ -53,11 +53,25 @@ fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
     let longest = larger(d[0].magnitude(), larger(d[1].magnitude(), d[2].magnitude()));
     let k = S::splat(reciprocal_power(longest));
     let ray = LocalRay { o: at(0), o_lo: at(3), d: each3(d, |x| x * k), d_lo: each3(at(9), |x| x * k) };
-    let found = if v[12].same(S::zero()).any() { ring_roots(ring, &ray) } else { roots_from(ring, &ray, v[12]) };
+    if !v[12].same(S::zero()).any() {
+        return numbers(roots_from(ring, &ray, v[12]), k);
+    }
+    let (found, doubt) = ring_roots(ring, &ray);
+    let LocalRay { o, o_lo: l, d, d_lo: e } = ray;
+    let given = [o[0], o[1], o[2], l[0], l[1], l[2], d[0], d[1], d[2], e[0], e[1], e[2], k];
+    S::again(doubt, given, numbers(found, k), |w| {
+        let (whole, nothing) = (|i: usize| three(|k| w[i + k] + w[i + 3 + k]), [Real::zero(); 3]);
+        let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
+        numbers(ring_roots(ring, &exact).0, w[12])
+    })
+}
+
+/// Roots times `k`, which leads from lengths of the shortened direction to those of the ray's, and then what they are.
+#[inline(always)]
+fn numbers<S: Single>(found: Found<S>, k: S) -> [S; 8] {
     let mut out = [S::zero(); 8];
     for (i, (t, is_root)) in found.into_iter().enumerate() {
-        out[i] = t * k; // from lengths of the shortened direction to those of the ray's
-        out[4 + i] = is_root;
+        (out[i], out[4 + i]) = (t * k, is_root);
     }
     out
 }
@@ -84,24 +98,31 @@ pub(super) fn point<R: Real>(ring: &Ring, p: [R; 3]) -> Point<R> {
 /// Roots, and 1 for each that there is.
 type Found<S> = [(S, S); 4];
 
-/// Where a line meets the ring, in order.
+/// In units of roundoff of the fourth power of the ring's reach: the error of the form between the ends of the span, where
+/// its terms add up to less than 64 such powers, each of less than 16 roundings.
+const DOUBT: f64 = 1024.0;
+
+/// Where a line meets the ring, in order; and whether it comes so near to touching that rounding may decide.
 #[inline(always)]
-fn ring_roots<S: Single>(ring: &Ring, ray: &LocalRay<S>) -> Found<S> {
+fn ring_roots<S: Single>(ring: &Ring, ray: &LocalRay<S>) -> (Found<S>, S::Mask) {
     let (zero, d) = (S::zero(), ray.d);
     let mut found = [(zero, zero); 4];
+    let never = zero.lt(zero);
     let (t0, m) = ray.nearest();
-    let reach = S::splat(ring.r + ring.tube);
-    let span2 = (reach * reach - dot(m, m)) / dot(d, d);
+    let reach = S::splat(ring.r + ring.tube) * beyond();
+    let reach2 = reach * reach;
+    let span2 = (reach2 - dot(m, m)) / dot(d, d);
     if !zero.le(span2).any() {
-        return found;
+        return (found, never);
     }
-    let span = span2.max(zero).sqrt() * beyond();
+    let span = span2.max(zero).sqrt();
     let quartic = quartic_at(ring, m, d);
     if let Some(enclosed) = S::enclosed_roots(&quartic, span) {
-        return enclosed.map(|(tau, is_root)| (t0 + tau, is_root));
+        return (enclosed.map(|(tau, is_root)| (t0 + tau, is_root)), never);
     }
     let mut taus = [zero; 4];
-    let n = isolate(&quartic, span, &mut taus);
+    let (n, least) = isolate(&quartic, span, &mut taus);
+    let doubt = least.le(S::splat(DOUBT * S::UNIT_ROUNDOFF) * (reach2 * reach2));
     // Polished on distance to the tube. Near the ray's own origin, t itself is the good variable: the difference t0 + τ would
     // keep only its absolute accuracy.
     for k in 0..n {
@@ -110,7 +131,7 @@ fn ring_roots<S: Single>(ring: &Ring, ray: &LocalRay<S>) -> Found<S> {
         let t = if near { polish(ring, ray.o, d, rough, zero) } else { t0 + polish(ring, m, d, taus[k], zero) };
         found[k] = (t, S::one());
     }
-    found
+    (found, doubt)
 }
 
 /// Where a ray that starts on the ring meets it again: the root at the start is divided out. `leaves` is positive where the ray
@@ -166,13 +187,15 @@ fn quartic_at<S: Real>(ring: &Ring, m: [S; 3], d: [S; 3]) -> [S; 5] {
     ]
 }
 
-/// All roots of the quartic in −span..span, in order: between consecutive roots of the derivative there is at most one.
+/// All roots of the quartic in −span..span, in order: between consecutive roots of the derivative there is at most one. And the
+/// least magnitude that it turns round at.
 #[inline(always)]
-fn isolate<S: Single>(q: &[S; 5], span: S, out: &mut [S; 4]) -> usize {
+fn isolate<S: Single>(q: &[S; 5], span: S, out: &mut [S; 4]) -> (usize, S) {
     let cubic = [S::splat(4.0) * q[0], S::splat(3.0) * q[1], S::splat(2.0) * q[2], q[3]];
     let mut turns = [S::zero(); 3];
     let n = isolate_cubic(&cubic, span, &mut turns);
-    roots_between(q, &turns[..n], span, out)
+    let least = turns[..n].iter().fold(S::splat(f64::INFINITY), |least, &x| horner(q, x).0.abs().min(least));
+    (roots_between(q, &turns[..n], span, out), least)
 }
 
 /// All roots of the cubic in −span..span, in order.
@@ -286,7 +309,7 @@ mod tests {
     const RING: Ring = Ring { r: 1.0, tube: 0.25, scale: 1.0 };
 
     fn roots(ring: &Ring, o: [f64; 3], d: [f64; 3]) -> Vec<f64> {
-        let found = ring_roots(ring, &LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] });
+        let found = ring_roots(ring, &LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] }).0;
         found.into_iter().filter(|x| x.1 == 1.0).map(|x| x.0).collect()
     }
 

@@ -123,8 +123,8 @@ pub(super) fn point<R: Real>(tube: &Tube, p: [R; 3], part: R) -> Point<R> {
     // Radius 2, of the sum's larger part; dot and root 3, quotient 1, products 2, and one to spare. A cap's height is exact.
     let gamma = R::splat(9.0 * R::UNIT_ROUNDOFF);
     let reach = gamma * (R::splat(tube.radius) + (slope * p[1]).abs());
-    let error = R::select(on_side, reach, zero);
-    Point { p: q, n, error: [error, zero, error] }
+    let error = |e: R| R::select(on_side, reach * e.abs(), zero);
+    Point { p: q, n, error: [error(ex), zero, error(ez)] }
 }
 
 #[cfg(test)]
