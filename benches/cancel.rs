@@ -47,7 +47,7 @@ fn main() {
         let waits: Vec<[f64; 2]> = moments.filter_map(|after| wait(&request(&text), after)).collect();
         let mut over: Vec<f64> = waits.iter().map(|w| w[1]).collect();
         over.sort_by(f64::total_cmp);
-        let given_up = waits.iter().map(|w| w[0]).fold(0.0, f64::max);
+        let given_up = waits.iter().map(|w| w[0]).fold(0.0, rtdsl::math::Real::max);
         let (Some(longest), Some(median)) = (over.last(), over.get(over.len() / 2)) else { continue };
         println!("{name:<26} {given_up:>12.1} {longest:>12.1} {median:>12.1}");
     }

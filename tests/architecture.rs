@@ -1,4 +1,5 @@
-//! The floors of the house, checked: who may import whom, a heading in every file, no file too long to read.
+//! The floors of the house, checked: who may import whom, a heading in every file, no file too long to read. And the rule of
+//! the kernels: no absolute constant.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,8 +8,18 @@ use std::path::{Path, PathBuf};
 const FLOORS: [(&str, u32); 8] =
     [("math", 0), ("diag", 0), ("scene", 1), ("film", 1), ("lang", 2), ("render", 2), ("verify", 3), ("app", 4)];
 
+/// Folders that a folder doesn't know although they lie below it: what is verified are scenes, whoever made them.
+const UNKNOWN: [(&str, &str); 1] = [("verify", "lang")];
+
 /// Folders of one floor that may be used all the same: pictures are developed with the scene's colour formulas.
 const SAME_FLOOR: [(&str, &str); 1] = [("film", "scene")];
+
+/// Where the formulas of rays and shapes stand: files and folders of `src`. No constant of theirs may have a size, or they
+/// would be right at one scale alone.
+const KERNELS: [&str; 5] = ["render/shape/", "render/ray.rs", "render/frame.rs", "render/touch.rs", "math/real.rs"];
+
+/// Numbers of this size and below count things: dimensions, coefficients, roundings.
+const LARGEST_COUNT: f64 = 64.0;
 
 /// A file longer than this holds more than one idea.
 const MOST_LINES: usize = 400;
@@ -20,6 +31,7 @@ fn floor(folder: &str) -> Option<u32> {
 fn allowed(from: &str, to: &str) -> bool {
     match (floor(from), floor(to)) {
         _ if from == to || SAME_FLOOR.contains(&(from, to)) => true,
+        _ if UNKNOWN.contains(&(from, to)) => false,
         (Some(a), Some(b)) => b < a,
         _ => false,
     }
@@ -137,6 +149,59 @@ fn first_names(tree: &str) -> Vec<String> {
     names
 }
 
+/// The float literals of a kernel that aren't small whole numbers or their halves, each with its line. Tests at the end of
+/// the file may have any.
+fn absolute_constants(text: &str) -> Vec<(usize, String)> {
+    let code = code_of(text);
+    let code = code.split("#[cfg(test)]").next().unwrap_or("");
+    let mut found = Vec::new();
+    let mut before = ' ';
+    let mut rest = code;
+    while let Some(c) = rest.chars().next() {
+        let starts = c.is_ascii_digit() && !(before.is_alphanumeric() || before == '_');
+        let length = if starts { literal_length(rest, before) } else { c.len_utf8() };
+        let (word, after) = rest.split_at(length);
+        if starts && !is_count(word) {
+            found.push((code[..code.len() - rest.len()].matches('\n').count() + 1, word.to_owned()));
+        }
+        before = word.chars().next_back().unwrap_or(' ');
+        rest = after;
+    }
+    found
+}
+
+/// How many bytes the number has that `text` starts with. After a dot it is a field's, with none of its own.
+fn literal_length(text: &str, before: char) -> usize {
+    let bytes = text.as_bytes();
+    let digit = |i: usize| bytes.get(i).is_some_and(|b| b.is_ascii_alphanumeric() || *b == b'_');
+    let mut i = 0;
+    let exponent = |i: usize| matches!(bytes[i - 1], b'e' | b'E') && !text.starts_with("0x");
+    while digit(i) || (i > 0 && matches!(bytes.get(i), Some(b'+' | b'-')) && exponent(i)) {
+        i += 1;
+    }
+    // `1.0`, but not `1..2` or `1.max(2)`.
+    let fraction =
+        bytes.get(i) == Some(&b'.') && bytes.get(i + 1).is_none_or(|b| !b.is_ascii_alphabetic() && *b != b'.');
+    if before == '.' || !fraction {
+        return i;
+    }
+    i += 1;
+    while digit(i) || (matches!(bytes.get(i), Some(b'+' | b'-')) && exponent(i)) {
+        i += 1;
+    }
+    i
+}
+
+/// Whether a literal is no float, or one that counts: whole or a half, written without an exponent, and small.
+fn is_count(literal: &str) -> bool {
+    let radix = ["0x", "0b", "0o"].iter().any(|p| literal.starts_with(p));
+    let plain = literal.replace('_', "");
+    let digits = plain.trim_end_matches("f64").trim_end_matches("f32");
+    let is_float = !radix && (digits.len() < plain.len() || digits.contains(['.', 'e', 'E']));
+    let counts = |x: f64| x <= LARGEST_COUNT && (2.0 * x).fract() == 0.0;
+    !is_float || (!digits.contains(['e', 'E']) && digits.parse().is_ok_and(counts))
+}
+
 /// What is wrong with one file; empty if nothing is.
 fn faults(path: &str, text: &str) -> Vec<String> {
     let mut faults = Vec::new();
@@ -146,6 +211,11 @@ fn faults(path: &str, text: &str) -> Vec<String> {
     let lines = text.lines().count();
     if lines > MOST_LINES {
         faults.push(format!("{path}: {lines} lines; split it by idea"));
+    }
+    if KERNELS.iter().any(|k| path == *k || (k.ends_with('/') && path.starts_with(k))) {
+        for (line, constant) in absolute_constants(text) {
+            faults.push(format!("{path}:{line}: `{constant}` in a kernel: no absolute constants"));
+        }
     }
     let Some((folder, _)) = path.split_once('/') else {
         return faults; // lib.rs and main.rs stand above all floors
@@ -199,10 +269,20 @@ fn violations_are_found() {
         ("film/mod.rs", "use super::lang::evaluate;"),
         ("film/a.rs", "mod tests { use super::super::super::app; }"),
         ("render/a.rs", "use crate::{math::{Affine, Real}, app::run};"),
+        ("verify/a.rs", "use crate::lang::evaluate;"),
+        ("render/a.rs", "use crate::verify;"),
         ("cellar/a.rs", ""),
         ("lang/a.rs", "/* \" */ use crate::render;"),
         ("lang/a.rs", "let c = '\"'; use crate::render;"),
         ("math/a.rs", &"\n".repeat(MOST_LINES)),
+        ("render/shape/a.rs", "const EPSILON: f64 = 1e-9;"),
+        ("render/shape/a.rs", "let x = 1.0e+3;"),
+        ("render/touch.rs", "let x = R::splat(0.001);"),
+        ("render/frame.rs", "let x = 65.0;"),
+        ("render/ray.rs", "let x = t.0+0.25;"),
+        ("math/real.rs", "let x = 1_0e5f64;"),
+        ("math/real.rs", "let x = 1000f32;"),
+        ("math/real.rs", "let x = [1.0,.5,2.0, 3.25];"),
     ] {
         assert_eq!(found(path, code).len(), 1, "{path}: {code}");
     }
@@ -210,10 +290,16 @@ fn violations_are_found() {
     for (path, code) in [
         ("film/a.rs", "use crate::scene::color::decode_srgb;"),
         ("app/a.rs", "use crate::{lang, render::World};"),
+        ("app/a.rs", "use crate::verify::picture;"),
+        ("verify/a.rs", "use crate::{render::World, film::Film, math::Affine};"),
         ("lang/a/b.rs", "use super::super::value::Value; use super::lang; use crate::lang::parse;"),
         ("lang/a.rs", "// crate::render\n/* crate::render /* nested */ crate::app */ let s = \"crate::render\";"),
         ("lang/a.rs", "let s = r#\"\" crate::render::World\"#; let c = ['\"', '\\'', '/']; let x: &'static str;"),
         ("main.rs", "use crate::app;"),
+        ("math/a.rs", "let x = 1e-9;"),
+        ("render/shape/a.rs", "let x = 64.0 * f64::EPSILON + 0.5 + 2. - 1.5_f64; // 1e-9"),
+        ("render/shape/a.rs", "let k = 1_000_000 + 0x1e9 + v.0.1 + x1e5; for i in 0..100 { 300.max(i) }"),
+        ("render/shape/a.rs", "#[cfg(test)]\nmod tests { const NEAR: f64 = 1e-9; }"),
     ] {
         assert_eq!(found(path, code), Vec::<String>::new(), "{path}: {code}");
     }

@@ -108,7 +108,7 @@ fn what_leaves_a_surface_never_meets_it_again_at_once() {
             let s = c.primitive.surface::<f64, false>(c.tables(), o, d, t, part);
             assert!((dot(s.n, s.n) - 1.0).abs() < 1e-12, "{name} {case}: normal of unit length");
             assert!(s.offset > 0.0 && s.offset.is_finite());
-            let size = s.p.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            let size = s.p.iter().map(|x| x.abs()).fold(0.0, rtdsl::math::Real::max);
             ulps += s.offset / (size * f64::EPSILON);
 
             // Away from the surface, on both sides.

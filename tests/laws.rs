@@ -145,7 +145,24 @@ fn powers_of_two_change_nothing_and_moves_next_to_nothing() {
         let scaled = seed((0..k.abs()).fold(1.0, |x, _| if k < 0 { x / 2.0 } else { x * 2.0 }), DVec3::ZERO);
         assert_same(&here, &small(&scaled), &format!("lengths times 2^{k}"));
     }
-    // A move rounds those coordinates of the text that aren't short binary fractions, such as 0.7: single pixels may change.
+    // A move that rounds no coordinate changes nothing, whether the text is moved or the whole scene.
+    let short = |by: DVec3| {
+        let mut scene = seed(1.0, by);
+        let points = scene.nodes.iter_mut().find_map(|n| match &mut n.kind {
+            NodeKind::Shape(Shape::Tetrahedron { points }) => Some(points),
+            _ => None,
+        });
+        points.expect("the seed scene has one")[3] = by + v(0.75, -8.0, -69.0); // for 0.7
+        scene
+    };
+    let there = small(&short(DVec3::ZERO));
+    let far = (1u64 << 40) as f64;
+    for by in [v(1024.0, 0.0, 0.0), v(-4096.0, 512.0, 65536.0), v(0.0, 1048576.0, 0.0), v(far, 1.0, -far)] {
+        assert_same(&there, &small(&short(by)), &format!("text moved by {by}"));
+        let moved = rtdsl::verify::picture::moved(&seed(1.0, DVec3::ZERO), by).expect("its camera is at round numbers");
+        assert_same(&here, &small(&moved), &format!("moved by {by}"));
+    }
+    // Where it rounds coordinates of the text that aren't short binary fractions, such as 0.7, single pixels may change.
     for by in [v(1024.0, 0.0, 0.0), v(-4096.0, 512.0, 65536.0), v(0.0, 1048576.0, 0.0)] {
         let moved = small(&seed(1.0, by));
         assert!(share_that_differs(&here, &moved, 2.0) <= 2e-4, "moved by {by}");

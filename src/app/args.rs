@@ -15,7 +15,9 @@ use std::time::Duration;
 /// Pictures written as text: reads a scene and ray-traces its picture.
 #[derive(Debug, Parser)]
 #[command(name = "rtdsl", version, disable_help_subcommand = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 the scene is wrong, 2 usage, 3 files or system, 4 pictures differ.")]
+#[command(
+    after_help = "Exit codes: 0 done, 1 the scene is wrong, 2 usage, 3 files or system, 4 pictures differ or a bound isn't kept."
+)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -36,6 +38,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Say what the renderer does for a scene and why, or what a pixel sees.
     Explain(ExplainArgs),
+    /// Try out on this machine what rtdsl says of its accuracy.
+    Verify(VerifyArgs),
     /// List the parameters that `--set` can change.
     Params(ParamsArgs),
     /// Explain a word of the scene language.
@@ -208,6 +212,29 @@ pub struct ExplainArgs {
     /// The view.
     #[command(flatten)]
     pub view: ViewArgs,
+}
+
+/// `rtdsl verify`.
+#[derive(Debug, Args)]
+pub struct VerifyArgs {
+    /// Scenes whose pictures are put through the laws of pictures; `-` is standard input. [default: three built-in scenes]
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// As many cases as the stated bounds speak of: minutes instead of seconds.
+    #[arg(long)]
+    pub extremes: bool,
+    /// Make this check alone, and others so named.
+    #[arg(long, value_name = "NAME")]
+    pub only: Vec<String>,
+    /// Let the scenes read files in this folder too.
+    #[arg(long, value_name = "DIR")]
+    pub allow_read: Vec<PathBuf>,
+    /// Print the figures as JSON on standard output; docs/verify.md tells of the fields.
+    #[arg(long)]
+    pub json: bool,
+    /// Print the figures as a table in Markdown.
+    #[arg(long, conflicts_with = "json")]
+    pub markdown: bool,
 }
 
 /// `rtdsl params`.

@@ -17,6 +17,7 @@ pub mod render;
 pub mod sight;
 pub mod stats;
 pub mod stop;
+pub mod verify;
 pub mod view;
 pub mod watch;
 pub mod words;
@@ -45,6 +46,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Gallery(a) => gallery::run(a),
         Command::Check(a) => check::run(a),
         Command::Explain(a) => explain::run(a),
+        Command::Verify(a) => verify::run(a),
         Command::Params(a) => params::run(a),
         Command::Help(a) => help::run(a),
         Command::Completions(a) => completions::run(a),

@@ -1,7 +1,8 @@
-//! A progress bar on a terminal, and nothing anywhere else.
+//! Progress on a terminal, and nothing anywhere else.
 
 use crate::render::{Crop, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::Duration;
 
 /// The bar; gone when dropped.
 pub struct Bar(ProgressBar);
@@ -41,5 +42,40 @@ impl Progress for Bar {
 impl Drop for Bar {
     fn drop(&mut self) {
         self.clear();
+    }
+}
+
+/// A bar for work in named steps, of which nobody knows how long each takes; clones are the same bar.
+#[derive(Clone)]
+pub struct Steps(ProgressBar);
+
+impl Steps {
+    /// A bar for `steps` steps on standard error, if it is a terminal.
+    pub fn new(steps: u64) -> Steps {
+        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
+        let style = ProgressStyle::with_template("{spinner} {msg}: {pos} of {len} done, {elapsed} passed");
+        Steps(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
+    }
+
+    /// A step begins.
+    pub fn begin(&self, name: &'static str) {
+        self.0.set_message(name);
+        // Often enough to be seen to move.
+        self.0.enable_steady_tick(Duration::from_millis(200));
+    }
+
+    /// A step is done.
+    pub fn end(&self) {
+        self.0.inc(1);
+    }
+
+    /// Prints something else without the bar in its way.
+    pub fn pause<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.0.suspend(print)
+    }
+
+    /// Takes it off the terminal.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
     }
 }

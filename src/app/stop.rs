@@ -15,7 +15,7 @@ pub enum Exit {
     Usage = 2,
     /// A file or the system failed.
     System = 3,
-    /// What was asked to hold doesn't: pictures differ from those that are committed.
+    /// What was asked to hold doesn't: pictures differ from those that are committed, or a bound isn't kept.
     Unmet = 4,
 }
 

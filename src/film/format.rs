@@ -123,8 +123,12 @@ fn encode_hdr(film: &Film, recipe: &Recipe, out: &mut impl Write) -> io::Result<
 
 /// The nearest value of shared exponent: relative to the largest channel, off by 1/256 at most.
 fn rgbe(pixel: [f32; 3]) -> [u8; 4] {
-    let pixel = pixel.map(|v| if v > 0.0 { v.min(LARGEST_RGBE) } else { 0.0 });
-    let largest = pixel.into_iter().fold(0.0, f32::max);
+    let pixel = pixel.map(|v| match v {
+        _ if v >= LARGEST_RGBE => LARGEST_RGBE,
+        _ if v > 0.0 => v,
+        _ => 0.0,
+    });
+    let largest = pixel.into_iter().fold(0.0, |m: f32, v| if v > m { v } else { m });
     if largest < 1e-38 {
         return [0; 4]; // below the smallest exponent
     }
@@ -209,7 +213,7 @@ mod tests {
         let file = bytes(&film, Format::Hdr);
         let back = image::load_from_memory_with_format(&file, image::ImageFormat::Hdr).unwrap().to_rgb32f();
         for (pixel, back) in film.pixels.iter().zip(back.as_raw().chunks(3)) {
-            let largest = pixel.iter().fold(1e-37f32, |a, &b| a.max(b));
+            let largest = pixel.iter().fold(1e-37f32, |a, &b| if b > a { b } else { a });
             for (&v, &b) in pixel.iter().zip(back) {
                 let (v, b) = (v.clamp(0.0, LARGEST_RGBE) as f64, b as f64);
                 assert!((v - b).abs() <= largest as f64 / 256.0, "{pixel:?} {back:?}");

@@ -2,10 +2,11 @@
 
 use super::fault::Fault;
 use super::limits::Limits;
-use super::value::Value;
+use super::value::{Value, number_text};
+use super::values::Values;
 use crate::diag::{FileId, Place, Span};
 use crate::scene::{
-    Color, ImageId, Material, MaterialId, Node, NodeId, NodeKind, Pattern, PatternId, PatternKind, Scene,
+    Color, ImageId, Material, MaterialId, Node, NodeId, NodeKind, Pattern, PatternId, PatternKind, Scene, range,
 };
 use ecow::EcoString;
 use std::collections::HashMap;
@@ -38,6 +39,8 @@ struct PatternTraits {
     depth: u32,
     /// Patterns that are evaluated for it, itself included.
     size: u64,
+    /// The least and the most that any channel of it can be.
+    values: Values,
 }
 
 /// A picture file as a scene names it.
@@ -57,7 +60,12 @@ impl<'c> Build<'c> {
         let scene = Scene::empty();
         let default = scene.materials[0].clone();
         let traits = (0..scene.patterns.len() as u32)
-            .map(|i| PatternTraits { number: PatternId(i) != default.color, depth: 1, size: 1 })
+            .map(|i| PatternTraits {
+                number: PatternId(i) != default.color,
+                depth: 1,
+                size: 1,
+                values: Values::of_pattern(&scene.patterns[i as usize].kind, |_| Values::UNIT),
+            })
             .collect();
         Build {
             scene,
@@ -117,7 +125,9 @@ impl<'c> Build<'c> {
     /// Stores a pattern; it is one of numbers if all its children are.
     pub fn pattern(&mut self, kind: PatternKind, span: Span) -> Result<Value, Box<Fault>> {
         self.check_count(self.scene.patterns.len(), "patterns")?;
-        let mut traits = PatternTraits { number: !matches!(kind, PatternKind::Image { .. }), depth: 1, size: 1 };
+        let number = !matches!(kind, PatternKind::Image { .. });
+        let values = Values::of_pattern(&kind, |id| self.values(id));
+        let mut traits = PatternTraits { number, depth: 1, size: 1, values };
         for child in kind.children() {
             let child = self.traits[child.0 as usize];
             traits.number &= child.number;
@@ -134,6 +144,11 @@ impl<'c> Build<'c> {
             return Err(Fault::new(format!("this pattern is made of more than {most} patterns"))
                 .note("each counts as often as it is used: a pattern of two that are of two is made of seven"));
         }
+        let (most, largest) = (values.size(), range::LARGEST);
+        if !(most <= largest) {
+            return Err(Fault::new(format!("the values of this pattern can reach {}", number_text(most)))
+                .note(format!("they are at most {} in size", number_text(largest))));
+        }
         self.scene.patterns.push(Pattern { kind, span: Some(span) });
         self.traits.push(traits);
         Ok(Value::Pattern(PatternId(self.scene.patterns.len() as u32 - 1)))
@@ -141,12 +156,13 @@ impl<'c> Build<'c> {
 
     /// The pattern that is the same colour everywhere; equal ones are stored once.
     pub fn constant(&mut self, color: Color, number: bool) -> PatternId {
+        let color = color + Color::BLACK; // -0 is 0
         let key = (color.0.map(f64::to_bits), number);
         if let Some(id) = self.constants.get(&key) {
             return *id;
         }
         self.scene.patterns.push(Pattern::constant(color));
-        self.traits.push(PatternTraits { number, depth: 1, size: 1 });
+        self.traits.push(PatternTraits { number, depth: 1, size: 1, values: Values::of_color(color) });
         let id = PatternId(self.scene.patterns.len() as u32 - 1);
         self.constants.insert(key, id);
         id
@@ -174,6 +190,21 @@ impl<'c> Build<'c> {
     /// Whether a pattern is of numbers.
     pub fn is_number(&self, id: PatternId) -> bool {
         self.traits[id.0 as usize].number
+    }
+
+    /// What the channels of a pattern can be.
+    pub fn values(&self, id: PatternId) -> Values {
+        self.traits[id.0 as usize].values
+    }
+
+    /// The largest size of a channel of a number, colour or pattern; 0 of other values.
+    pub fn size_of_channels(&self, value: &Value) -> f64 {
+        match value {
+            Value::Number(n) => n.abs(),
+            Value::Color(c) => Values::of_color(*c).size(),
+            Value::Pattern(id) => self.values(*id).size(),
+            _ => 0.0,
+        }
     }
 
     /// What a node is, in a word.

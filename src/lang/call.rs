@@ -95,6 +95,10 @@ impl<'p> Machine<'p> {
             Run::Call(run) => run(self, values),
             Run::Number(_) | Run::Constant(_) | Run::Syntax => Ok(Value::None),
         };
+        let result = result.and_then(|value| match value.is_finite() {
+            true => Ok(value),
+            false => Err(Fault::new(format!("the result of `{}` is too large", word.name)).into()),
+        });
         result.map_err(|stop| match stop {
             Stop::Fault(f) => self.locate(f, span, args),
             other => other,

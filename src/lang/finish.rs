@@ -3,11 +3,11 @@
 
 use super::build::PictureFile;
 use super::load::{Loader, read, reason};
+use super::measure::{is_measurable, misplaced, misplaced_light};
 use super::picture;
-use super::value::number_text;
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::scene::{Color, Image, ImageId, Material, NodeId, NodeKind, PatternId, PatternKind, Scene, Shape, range};
-use glam::DVec3;
+use crate::math::Affine;
+use crate::scene::{Color, Image, ImageId, Material, NodeId, NodeKind, PatternId, PatternKind, Scene};
 use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
 
@@ -36,13 +36,10 @@ pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) 
                 materials.insert(i.material);
                 misplaced(shape, &i.world_from_object)
             }
-            NodeKind::Light(light) => {
-                let at = i.world_from_object.apply(light.at);
-                (at.abs().max_element() > range::LARGEST || !at.is_finite()).then(|| "is too far away".to_owned())
-            }
+            NodeKind::Light(light) => misplaced_light(light.at, &i.world_from_object),
             _ => None,
         };
-        if let Some(why) = place
+        if let Some((why, right)) = place
             && bad.insert(i.node)
             && bad.len() <= 10
         {
@@ -50,7 +47,7 @@ pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) 
             errors.push(
                 Diagnostic::error(format!("this {what} {why}"))
                     .at(node.place.span, "where its groups and transforms put it")
-                    .note("a length or coordinate is 0, or from 1e-140 to 1e140 in size")
+                    .note(right)
                     .from_place(node.place.clone()),
             );
         }
@@ -64,7 +61,42 @@ pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) 
         let m = scene.material(id);
         live.extend(slots(m));
     }
+    errors.extend(unmeasurable(scene, &live));
     errors.extend(load_pictures(scene, pictures, loader, live));
+    errors
+}
+
+/// Patterns that their transforms, all together, scale or move out of the numbers.
+fn unmeasurable(scene: &Scene, live: &[PatternId]) -> Diagnostics {
+    let (mut errors, mut bad) = (Vec::new(), HashSet::new());
+    let mut seen: HashSet<(PatternId, [u64; 12])> = HashSet::new();
+    let mut stack: Vec<(PatternId, Affine)> = live.iter().map(|id| (*id, Affine::IDENTITY)).collect();
+    while let Some((id, around)) = stack.pop() {
+        let (linear, shift) = (around.linear_f64(), around.shift_f64());
+        let bits = |i: usize| linear.as_flattened().iter().chain(&shift).nth(i).map_or(0, |x| x.to_bits());
+        if !seen.insert((id, std::array::from_fn(bits))) {
+            continue;
+        }
+        let pattern = scene.pattern(id);
+        let mut inside = around;
+        if let PatternKind::Transformed { parent_from_child, .. } = &pattern.kind {
+            match parent_from_child.inverse().map(|m| m.compose(&around)).filter(is_measurable) {
+                Some(map) => inside = map,
+                None => {
+                    if bad.insert(id) && bad.len() <= 10 {
+                        let d = Diagnostic::error("this pattern is scaled or moved beyond all measure");
+                        let d = d.note("what counts is all transforms around it together");
+                        errors.push(match pattern.span {
+                            Some(span) => d.at(span, "here it is too much"),
+                            None => d,
+                        });
+                    }
+                    continue;
+                }
+            }
+        }
+        stack.extend(pattern.kind.children().into_iter().map(|child| (child, inside)));
+    }
     errors
 }
 
@@ -122,77 +154,4 @@ fn open(file: &PictureFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
     let decode = || picture::decode(&path, &bytes, digest, &loader.limits);
     let picture = loader.store.pictures.get(digest, decode).map_err(refuse)?;
     Ok(Image { path, ..picture })
-}
-
-/// Why a shape can't be traced where it stands.
-fn misplaced(shape: &Shape, world_from_object: &crate::math::Affine) -> Option<String> {
-    if surely_placed(shape, world_from_object) {
-        return None;
-    }
-    let m = world_from_object.linear_f64();
-    let column = |c: usize| DVec3::new(m[0][c], m[1][c], m[2][c]).abs().max_element();
-    let (a, b, c) = (column(0), column(1), column(2));
-    let (least, most) = (a.min(b).min(c), a.max(b).max(c));
-    let usable = |x: f64| x.is_finite() && range::is_supported(x) && x != 0.0;
-    if !usable(least) || !usable(most) || world_from_object.inverse().is_none() {
-        return Some("is scaled beyond all measure".into());
-    }
-    let (points, small, large) = extent(shape);
-    if small * least < range::SMALLEST {
-        return Some(format!("is too small: about {}", number_text(small * least)));
-    }
-    let far = points.iter().map(|p| world_from_object.apply(*p).abs().max_element()).fold(large * most, f64::max);
-    if far > range::LARGEST || !far.is_finite() {
-        return Some("is too large or too far away".into());
-    }
-    None
-}
-
-/// Whether a shape stands so far within all limits that `f64` can tell: nearly every one does.
-fn surely_placed(shape: &Shape, world_from_object: &crate::math::Affine) -> bool {
-    /// Room to the limits: far more than the rounding of a few sums and products.
-    const ROOM: f64 = 1e6;
-    let m = world_from_object.linear_f64();
-    // A sum lets nothing that isn't a number through.
-    let size = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
-    let rows = m.map(size);
-    let columns = [0, 1, 2].map(|c| size([m[0][c], m[1][c], m[2][c]]));
-    let normal = |x: &f64| (range::SMALLEST * ROOM..=range::LARGEST / ROOM).contains(x);
-    if !rows.iter().chain(&columns).all(normal) {
-        return false;
-    }
-    // Rows of size 1: the determinant's rounding error is a few 1e-16.
-    let [a, b, c] = [0, 1, 2].map(|r| DVec3::from_array(m[r].map(|x| x / rows[r])));
-    let (points, small, large) = extent(shape);
-    let far = points.iter().map(|p| size(p.to_array())).fold(large, f64::max);
-    let reach = 3.0 * size(rows) * far + size(world_from_object.shift_f64());
-    a.cross(b).dot(c).abs() > 1e-9
-        && small * columns[0].min(columns[1]).min(columns[2]) >= range::SMALLEST * ROOM
-        && reach <= range::LARGEST / ROOM
-}
-
-/// Points of a shape, its smallest and its largest size; 1 where it has none.
-fn extent(shape: &Shape) -> ([DVec3; 4], f64, f64) {
-    let edges = |p: &[DVec3]| {
-        let sizes = p.iter().skip(1).map(|q| (*q - p[0]).abs().max_element());
-        sizes.fold((f64::INFINITY, 0f64), |(lo, hi), s| (lo.min(s), hi.max(s)))
-    };
-    match shape {
-        Shape::Sphere { at, r } => ([*at; 4], *r, *r),
-        Shape::Plane { through, .. } => ([*through; 4], 1.0, 1.0),
-        Shape::Box { from, to } => ([*from, *to, *to, *to], (*to - *from).min_element(), (*to - *from).max_element()),
-        Shape::Disc { at, r, .. } => ([*at; 4], *r, *r),
-        Shape::Cylinder { from, to, r, .. } => ([*from, *to, *to, *to], *r, *r),
-        Shape::Cone { from, to, r, top, .. } => ([*from, *to, *to, *to], r.max(*top), r.max(*top)),
-        Shape::Torus { at, r, tube, .. } => ([*at; 4], *tube, r + tube),
-        Shape::Triangle { points, .. } => {
-            let (lo, hi) = edges(points);
-            let [a, b, c] = *points;
-            ([a, b, c, c], lo, hi)
-        }
-        Shape::Tetrahedron { points } => {
-            let (lo, hi) = edges(points);
-            (*points, lo, hi)
-        }
-    }
 }

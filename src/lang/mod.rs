@@ -20,6 +20,7 @@ pub mod highlight;
 mod limits;
 mod load;
 mod machine;
+mod measure;
 mod memory;
 mod ops;
 mod param;
@@ -38,6 +39,7 @@ mod syntax;
 mod tests;
 mod ty;
 mod value;
+mod values;
 pub mod word;
 
 pub use highlight::{Token, TokenClass, highlight};

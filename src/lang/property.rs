@@ -17,6 +17,8 @@ pub struct Param {
     pub default: Default,
     /// Allowed values.
     pub range: Option<Bounds>,
+    /// Whether it is an amount of light, which is limited.
+    pub light: bool,
     /// May go by position.
     pub positional: bool,
     /// Takes any number of further arguments by position; the last parameter only.
@@ -63,17 +65,17 @@ pub struct Bounds {
 
 /// A parameter that must be given, by position or by name.
 pub const fn required(name: &'static str, ty: Ty, doc: &'static str) -> Param {
-    Param { name, ty, default: Default::Required, range: None, positional: true, rest: false, doc }
+    Param { name, ty, default: Default::Required, range: None, light: false, positional: true, rest: false, doc }
 }
 
 /// A parameter that may be left out, and must be named.
 pub const fn optional(name: &'static str, ty: Ty, default: Default, doc: &'static str) -> Param {
-    Param { name, ty, default, range: None, positional: false, rest: false, doc }
+    Param { name, ty, default, range: None, light: false, positional: false, rest: false, doc }
 }
 
 /// Any number of further arguments.
 pub const fn rest(name: &'static str, ty: Ty, doc: &'static str) -> Param {
-    Param { name, ty, default: Default::Absent, range: None, positional: true, rest: true, doc }
+    Param { name, ty, default: Default::Absent, range: None, light: false, positional: true, rest: true, doc }
 }
 
 impl Param {
@@ -95,6 +97,11 @@ impl Param {
     /// Between `least` and `most`, neither included.
     pub const fn between(mut self, least: f64, most: f64) -> Param {
         self.range = Some(Bounds { least, least_included: false, most, most_included: false });
+        self
+    }
+    /// An amount of light: a colour, a share or a factor of one.
+    pub const fn light(mut self) -> Param {
+        self.light = true;
         self
     }
     /// May go by position though it has a default.
@@ -173,6 +180,9 @@ impl Param {
             }
             _ => Ok(()),
         };
+        if self.light {
+            amount(self.name, value, build)?;
+        }
         match (self.ty, value) {
             (Ty::Length, Value::Number(n)) => {
                 bounded(*n)?;
@@ -266,4 +276,19 @@ impl Param {
             _ => fault,
         }
     }
+}
+
+/// Checks that a number, a colour and all values of a pattern are amounts of light that can be traced.
+pub(super) fn amount(name: &str, value: &Value, build: &Build) -> Result<(), Box<Fault>> {
+    let size = build.size_of_channels(value);
+    if size <= range::BRIGHTEST {
+        return Ok(());
+    }
+    let found = match value {
+        Value::Pattern(_) => format!("it can reach {}", number_text(size)),
+        _ => format!("got {}", value.show(60)),
+    };
+    let most = number_text(range::BRIGHTEST);
+    Err(Fault::new(format!("`{name}` is outside the supported amounts of light, {found}"))
+        .note(format!("an amount of light is at most {most} in size; 1 is the brightest that a picture shows")))
 }

@@ -94,6 +94,15 @@ impl Value {
         }
     }
 
+    /// Whether its own numbers, but not those in a list, are ones that can be counted with.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Value::Number(n) | Value::Angle(n) => n.is_finite(),
+            Value::Vec3(v) | Value::Color(Color(v)) => v.iter().all(|x| x.is_finite()),
+            _ => true,
+        }
+    }
+
     /// A list of these values.
     pub fn list(items: EcoVec<Value>) -> Value {
         match items[..] {

@@ -95,7 +95,8 @@ mod tests {
             let v = gradient_noise(p, 7);
             assert!(v.abs() <= 1.1);
             sum += v;
-            steepest = steepest.max((gradient_noise([p[0] + 1e-4, p[1], p[2]], 7) - v).abs() / 1e-4);
+            let slope = (gradient_noise([p[0] + 1e-4, p[1], p[2]], 7) - v).abs() / 1e-4;
+            steepest = if slope > steepest { slope } else { steepest };
         }
         assert!((sum / n as f64).abs() < 0.02 && steepest < 6.0, "{} {steepest}", sum / n as f64);
     }

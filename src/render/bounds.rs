@@ -21,6 +21,10 @@ impl Bounds {
         let reach: [f64; 3] = std::array::from_fn(|i| half[i] + SLACK * (half[i] + centre[i].abs()));
         Bounds { lo: std::array::from_fn(|i| centre[i] - reach[i]), hi: std::array::from_fn(|i| centre[i] + reach[i]) }
     }
+    /// Around points, widened for rounding.
+    pub fn of_points(points: [[f64; 3]; 3]) -> Bounds {
+        points.into_iter().fold(Bounds::EMPTY, |b, p| b.union(Bounds::around(p, [0.0; 3])))
+    }
     /// Holds both.
     pub fn union(self, o: Bounds) -> Bounds {
         Bounds {

@@ -3,7 +3,7 @@
 //! Binary, built top-down by the surface area heuristic over binned centres (Wald, "On fast construction of SAH-based
 //! bounding volume hierarchies", 2007). The same primitives give the same tree.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use crate::math::real::{each3, three};
 use crate::math::{Mask, Real};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -111,6 +111,10 @@ impl Bvh {
             return;
         }
         let inverse = each3(d, |x| R::one() / x);
+        // How far a turned surface may seem off by what its frame makes of an origin this far out: 16 roundings, as many as
+        // boxes are wider by for their own distance.
+        let reach = R::splat(16.0 * R::UNIT_ROUNDOFF) * o[0].abs().max(o[1].abs()).max(o[2].abs());
+        let o = [each3(o, |x| x + reach), each3(o, |x| x - reach)];
         let first_sign = three(|i| !d[i].lt(R::zero()).any());
         let (mut stack, mut depth) = ([0u32; STACK], 1);
         while depth > 0 {
@@ -141,20 +145,21 @@ impl Bvh {
 }
 
 /// Whether rays meet a box at a t from 0 to `t_max`. Never misses by rounding: the far side is widened (Ize, "Robust BVH ray
-/// traversal", JCGT 2(2), 2013), and a NaN (0·∞, a ray within a face) never wins a comparison.
+/// traversal", JCGT 2(2), 2013), and so is `t_max`, or a box that begins at the very t of a hit would hide another one there;
+/// a NaN (0·∞, a ray within a face) never wins a comparison. `o` is the origin for the lower faces and that for the upper.
 #[inline(always)]
-fn meets<R: Real>(b: &Bounds, o: [R; 3], inverse: [R; 3], t_max: R) -> R::Mask {
+fn meets<R: Real>(b: &Bounds, o: [[R; 3]; 2], inverse: [R; 3], t_max: R) -> R::Mask {
     let widen = R::splat(1.0 + 8.0 * R::UNIT_ROUNDOFF);
-    let (mut near, mut far) = (R::zero(), t_max);
+    let (mut near, mut far) = (R::zero(), t_max * widen);
     for i in 0..3 {
-        let (mut lo, mut hi) = (R::splat(b.lo[i]), R::splat(b.hi[i]));
+        let (mut lo, mut hi) = (b.lo[i], b.hi[i]);
         if R::UNIT_ROUNDOFF > f64::EPSILON {
-            // The box itself was rounded on the way into a shorter format.
-            let u = R::splat(2.0 * R::UNIT_ROUNDOFF);
-            lo = lo - u * lo.abs();
-            hi = hi + u * hi.abs();
+            // Box, centre and size were rounded on the way into a shorter format.
+            let reach = 16.0 * R::UNIT_ROUNDOFF * larger(lo.abs(), hi.abs());
+            (lo, hi) = (lo - reach, hi + reach);
         }
-        let (t0, t1) = ((lo - o[i]) * inverse[i], (hi - o[i]) * inverse[i]);
+        let (lo, hi) = (R::splat(lo), R::splat(hi));
+        let (t0, t1) = ((lo - o[0][i]) * inverse[i], (hi - o[1][i]) * inverse[i]);
         let swap = inverse[i].lt(R::zero());
         let (enter, leave) = (R::select(swap, t1, t0), R::select(swap, t0, t1));
         near = enter.max(near);
@@ -306,7 +311,7 @@ mod tests {
             let d = [3, 4, 5].map(|k| if random(k + 9) < 0.1 { 0.0 } else { random(k) - 0.5 });
             let inverse = d.map(|x: f64| 1.0 / x);
             let mut expected: Vec<u32> =
-                all.iter().filter(|(_, b)| meets(b, o, inverse, f64::INFINITY).any()).map(|x| x.0).collect();
+                all.iter().filter(|(_, b)| meets(b, [o, o], inverse, f64::INFINITY).any()).map(|x| x.0).collect();
             let mut found = Vec::new();
             tree.traverse(o, d, f64::INFINITY, |id| {
                 found.push(id);

@@ -3,7 +3,7 @@
 
 use super::bounds::Bounds;
 use super::bvh::Bvh;
-use super::digest::{MaterialDigest, content_key};
+use super::digest::{LengthKey, MaterialDigest, content_key, power_to_unit};
 use super::material::{Slot, Surfacing};
 use super::place::{Form, Placed};
 use super::shape::Kind;
@@ -15,9 +15,11 @@ use crate::math::Affine;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PrimitiveKey {
     /// Its shape and place, after whether it lets light through.
-    pub geometry: (bool, u64, u64),
-    /// All of its look: its material and, where patterns show, the space that they stand in.
+    pub geometry: (bool, LengthKey),
+    /// All of its look: its material.
     pub look: u64,
+    /// And, where patterns show, the space that they stand in.
+    pub space: LengthKey,
     /// The part of its look that shadows show.
     pub transmit: u64,
 }
@@ -26,18 +28,16 @@ impl PrimitiveKey {
     /// The key of a shape at its place. Geometry goes before look, so that painting never brings another of two coincident
     /// surfaces to the front.
     pub fn new(placed: &Placed, made: &Made, material: MaterialDigest, surfacing: &Surfacing) -> PrimitiveKey {
-        let (a, b) = geometry(placed);
-        let geometry = (surfacing.lets_through(), a, b);
+        let geometry = (surfacing.lets_through(), geometry(placed));
+        let (look, mut transmit) = (material.all, material.transmit);
         if !surfacing.patterned {
-            return PrimitiveKey { geometry, look: material.all, transmit: material.transmit };
+            return PrimitiveKey { geometry, look, space: LengthKey::default(), transmit };
         }
         let space = pattern_space(placed, made);
-        let in_space = |digest: u64| content_key([digest, space].into_iter());
-        let transmit = match surfacing.transmit {
-            Slot::Constant(_) => material.transmit,
-            Slot::Pattern(_) => in_space(material.transmit),
-        };
-        PrimitiveKey { geometry, look: in_space(material.all), transmit }
+        if let Slot::Pattern(_) = surfacing.transmit {
+            transmit = content_key([transmit, space.content, space.power as u64, space.signed].into_iter());
+        }
+        PrimitiveKey { geometry, look, space, transmit }
     }
 }
 
@@ -139,40 +139,42 @@ impl Change {
     }
 }
 
-/// A number for a shape and its place, and another from the same content: together as good as never the same for two.
-fn geometry(p: &Placed) -> (u64, u64) {
-    let mut bits = Vec::with_capacity(32);
-    let mut add = |v: &[f64]| bits.extend(v.iter().map(|x| x.to_bits()));
+/// Knows a shape and its place: all lengths, camera-relative, and what has no length.
+fn geometry(p: &Placed) -> LengthKey {
+    // A stretched frame holds the scale that sizes don't; of any other frame the largest entry is about 1.
+    let unit = power_to_unit(p.world_from_local.linear.iter().flatten().map(|x| x.hi));
+    let frame = || p.world_from_local.linear.into_iter().flatten().flat_map(move |x| [x.hi * unit, x.lo * unit]);
+    let shift = p.world_from_local.shift.into_iter().flat_map(|x| [x.hi, x.lo]);
+    let in_frame = |plain: &[f64], sizes: &[f64]| {
+        let lengths = sizes.iter().map(|x| x / unit).chain(shift);
+        LengthKey::new(plain.iter().copied().chain(frame()), lengths)
+    };
     match &p.form {
         Form::Framed(kind) => match kind {
-            Kind::Sphere(r) => add(&[1.0, *r]),
-            Kind::Plane => add(&[2.0]),
-            Kind::Disc { r, hole } => add(&[3.0, *r, *hole]),
-            Kind::Cuboid(h) => add(&[4.0, h[0], h[1], h[2]]),
-            Kind::Tube(t) => add(&[5.0, t.radius, t.slope, t.bottom, t.top, t.caps as u8 as f64]),
-            Kind::Ring(r) => add(&[6.0, r.r, r.tube, r.scale]),
-            Kind::Triangle(_) => add(&[7.0]),
+            Kind::Sphere(r) => in_frame(&[1.0], &[*r]),
+            Kind::Plane => in_frame(&[2.0], &[]),
+            Kind::Disc { r, hole } => in_frame(&[3.0], &[*r, *hole]),
+            Kind::Cuboid(half) => in_frame(&[4.0], half),
+            Kind::Tube(t) => in_frame(&[5.0, t.slope, t.caps as u8 as f64], &[t.radius, t.bottom, t.top]),
+            Kind::Ring(r) => in_frame(&[6.0], &[r.r / r.scale, r.tube / r.scale]),
+            Kind::Triangle(_) => in_frame(&[7.0], &[]),
         },
-        Form::Triangle(v, n, shading) => {
-            v.iter().chain([n]).chain(shading.iter().flatten()).for_each(|x| add(x));
-        }
+        Form::Triangle(v, n, shading) => LengthKey::new(
+            [n].into_iter().chain(shading.iter().flatten()).flatten().copied(),
+            v.iter().flatten().copied(),
+        ),
     }
-    bits.extend(map_bits(&p.world_from_local));
-    let first = content_key(bits.iter().copied());
-    (first, content_key(bits.into_iter().rev()))
 }
 
-/// A number for the space in which a shape's patterns are evaluated, and for what pictures and bumps know of the shape.
-fn pattern_space(p: &Placed, made: &Made) -> u64 {
-    let rescale = p.rescale.iter().flat_map(|r| {
-        let faces = r.faces.iter().flatten().flat_map(|f| [f.0, f.1]);
-        faces.chain([r.inverse]).map(f64::to_bits)
-    });
-    let shape = made.centre.iter().chain([&made.half_height]).map(|x| x.to_bits());
-    content_key(map_bits(&p.made_from_local).chain(rescale).chain(map_bits(&made.world_from_object)).chain(shape))
-}
-
-fn map_bits(map: &Affine) -> impl Iterator<Item = u64> {
-    let all = [map.linear[0], map.linear[1], map.linear[2], map.shift];
-    all.into_iter().flatten().flat_map(|x| [x.hi.to_bits(), x.lo.to_bits()])
+/// Knows the space in which a shape's patterns are evaluated, and what pictures and bumps know of the shape. The lengths are
+/// those of the map from there to the world; those in which the shape was made don't change with the world's.
+fn pattern_space(p: &Placed, made: &Made) -> LengthKey {
+    let flat = |m: &Affine| m.linear.into_iter().flatten().flat_map(|x| [x.hi, x.lo]);
+    // The same whether or not the frame was scaled: a turned sphere's map takes the scale back.
+    let unit = power_to_unit(p.made_from_local.linear.iter().flatten().map(|x| x.hi));
+    let from_local = flat(&p.made_from_local).map(|x| x * unit);
+    let origin = p.made_from_local.shift.into_iter().flat_map(|x| [x.hi, x.lo]);
+    let faces = p.faces_as_made().into_iter().flatten();
+    let shape = made.centre.into_iter().flat_map(|x| [x.hi, x.lo]).chain([made.half_height]);
+    LengthKey::new(from_local.chain(origin).chain(faces).chain(shape), flat(&made.world_from_object))
 }

@@ -1,6 +1,9 @@
 //! A number for the content of each pattern and material, whatever its place in the text: what makes the order of objects
-//! not matter.
+//! not matter. And one for the content of what stands in space, by which a scene that is scaled or mirrored as a whole keeps
+//! its order.
 
+use super::bounds::larger;
+use crate::math::affine::reciprocal_power;
 use crate::math::hash::KeyedHash;
 use crate::scene::{Filter, Mapping, PatternId, PatternKind, Scene};
 
@@ -33,6 +36,42 @@ pub fn material_digests(scene: &Scene) -> Vec<MaterialDigest> {
 /// A number that depends on nothing but the given words.
 pub fn content_key(words: impl Iterator<Item = u64>) -> u64 {
     words.fold(KeyedHash::new(), KeyedHash::with).bits()
+}
+
+/// Knows and orders things with lengths. What is different differs in it, as good as surely. But the order is that of shapes
+/// without their scale and signs first: all lengths times a power of two, which is exact, leave the order as it is, and
+/// so does a mirror, but for things that are each other's mirror image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LengthKey {
+    /// Of magnitudes, lengths brought to unit size.
+    pub content: u64,
+    /// The power of two by which they were brought there: the exponent's bits, which grow with it.
+    pub power: u64,
+    /// Of the same with their signs.
+    pub signed: u64,
+}
+
+impl LengthKey {
+    /// The key of `plain` numbers and `lengths`, all finite.
+    pub fn new(plain: impl Iterator<Item = f64> + Clone, lengths: impl Iterator<Item = f64> + Clone) -> LengthKey {
+        let mut power = power_to_unit(lengths.clone());
+        if std::env::var_os("MUT_KEY").is_some() {
+            power = 1.0;
+        }
+        let all = || plain.clone().chain(lengths.clone().map(|x| x * power));
+        // -0 counts as 0.
+        let content = all()
+            .fold(KeyedHash::new(), |h, x| h.with_f64(if std::env::var_os("MUT_SIGN").is_some() { x } else { x.abs() }))
+            .bits();
+        let signed = all().fold(KeyedHash::new(), KeyedHash::with_f64).bits();
+        LengthKey { content, power: power.to_bits(), signed }
+    }
+}
+
+/// The power of two that brings the largest magnitude into 1..2; 1 where that is 0.
+pub fn power_to_unit(x: impl Iterator<Item = f64>) -> f64 {
+    let largest = x.map(f64::abs).fold(0.0, larger);
+    if largest.is_normal() { reciprocal_power(largest) } else { 1.0 }
 }
 
 fn pattern_digest(scene: &Scene, kind: &PatternKind, before: &[u64]) -> u64 {

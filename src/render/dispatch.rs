@@ -4,7 +4,7 @@
 //! library that stands in for it, only faster.
 
 use super::footprint::{Footprint, Recorder};
-use super::options::{Crop, Options, Progress, RayCounts, Rendered};
+use super::options::{Crop, Instructions, Options, Progress, RayCounts, Rendered};
 use super::tile::TileWorker;
 use super::world::World;
 use crate::film::Film;
@@ -19,7 +19,7 @@ pub fn render(world: &World, options: &Options, progress: &dyn Progress, cancel:
     let part = options.crop_or_all();
     let mut film = Film::new(part.width, part.height);
     let work = Work { world, options, progress, cancel, tiles: None };
-    let (rays, threads) = work.run(Instructions::best(), &mut film, None)?;
+    let (rays, threads) = work.run(&mut film, None)?;
     Some(Rendered { film, rays, threads })
 }
 
@@ -34,7 +34,7 @@ pub fn render_tiles(
     footprints: &mut [Footprint],
 ) -> Option<RayCounts> {
     let work = Work { world, options, progress, cancel, tiles: Some(tiles) };
-    work.run(Instructions::best(), film, Some(footprints)).map(|(rays, _)| rays)
+    work.run(film, Some(footprints)).map(|(rays, _)| rays)
 }
 
 /// The tiles of a picture, row by row.
@@ -49,24 +49,34 @@ pub fn tiles_of(options: &Options) -> Vec<Crop> {
     start(part.y, part.height).flat_map(row).collect()
 }
 
+/// The instructions that `asked` comes to on this machine, in words: `AVX2 and FMA`, or `common`.
+pub fn instructions(asked: Instructions) -> &'static str {
+    match Build::of(asked) {
+        Build::Common => "common",
+        #[cfg(target_arch = "x86_64")]
+        Build::Fma => "AVX2 and FMA",
+    }
+}
+
 /// What the tile's loop is compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Instructions {
+enum Build {
     /// What every processor of the family has.
-    Baseline,
+    Common,
     /// AVX2 and FMA of x86-64.
     #[cfg(target_arch = "x86_64")]
     Fma,
 }
 
-impl Instructions {
-    /// The best of this machine.
-    fn best() -> Instructions {
+impl Build {
+    fn of(asked: Instructions) -> Build {
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            return Instructions::Fma;
+        if asked == Instructions::Best && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            return Build::Fma;
         }
-        Instructions::Baseline
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = asked;
+        Build::Common
     }
 }
 
@@ -92,12 +102,8 @@ const STACK: usize = 16 << 20;
 
 impl Work<'_> {
     /// Rays traced, and by how many threads.
-    fn run(
-        &self,
-        on: Instructions,
-        film: &mut Film,
-        footprints: Option<&mut [Footprint]>,
-    ) -> Option<(RayCounts, usize)> {
+    fn run(&self, film: &mut Film, footprints: Option<&mut [Footprint]>) -> Option<(RayCounts, usize)> {
+        let on = Build::of(self.options.instructions);
         let run = || match self.options.precision {
             Precision::F64 => self.trace::<f64>(on, film, footprints),
             Precision::F32 => self.trace::<f32>(on, film, footprints),
@@ -112,7 +118,7 @@ impl Work<'_> {
 
     fn trace<L: Lane>(
         &self,
-        on: Instructions,
+        on: Build,
         film: &mut Film,
         footprints: Option<&mut [Footprint]>,
     ) -> Option<(RayCounts, usize)> {
@@ -168,17 +174,12 @@ impl Work<'_> {
 }
 
 /// Renders one tile.
-fn render_tile<L: Lane>(
-    instructions: Instructions,
-    worker: &mut TileWorker<'_, L>,
-    tile: Crop,
-    rows: &mut [&mut [[f32; 3]]],
-) {
-    match instructions {
-        Instructions::Baseline => worker.render(tile, rows),
-        // SAFETY: `Instructions::best` alone makes this value, and only where the processor was found to have both.
+fn render_tile<L: Lane>(build: Build, worker: &mut TileWorker<'_, L>, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
+    match build {
+        Build::Common => worker.render(tile, rows),
+        // SAFETY: `Build::of` alone makes this value, and only where the processor was found to have both.
         #[cfg(target_arch = "x86_64")]
-        Instructions::Fma => unsafe { render_tile_fma(worker, tile, rows) },
+        Build::Fma => unsafe { render_tile_fma(worker, tile, rows) },
     }
 }
 
@@ -243,16 +244,12 @@ mod tests {
         let world = World::build(&scene, &scene.cameras[0]);
         for precision in [Precision::F64, Precision::F32] {
             let settings = Options::from_settings(&scene.settings);
-            let options = Options { width: 64, height: 48, precision, ..settings };
-            let cancel = AtomicBool::new(false);
-            let work = Work { world: &world, options: &options, progress: &Silent, cancel: &cancel, tiles: None };
             let on = |instructions| {
-                let mut film = Film::new(64, 48);
-                let (rays, _) = work.run(instructions, &mut film, None).expect("not cancelled");
-                (film, rays)
+                let options = Options { width: 64, height: 48, precision, instructions, ..settings.clone() };
+                render(&world, &options, &Silent, &AtomicBool::new(false)).expect("not cancelled")
             };
-            let (best, baseline) = (on(Instructions::best()), on(Instructions::Baseline));
-            assert!(best.1.transmitted > 1000 && best.0 == baseline.0);
+            let (best, common) = (on(Instructions::Best), on(Instructions::Common));
+            assert!(best.rays.transmitted > 1000 && best.film == common.film);
         }
     }
 }

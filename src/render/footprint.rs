@@ -5,7 +5,7 @@
 //! those and the lights, and that nothing else stood in the way. The first two are kept by number; the third as the same cones
 //! and boxes of points by which the tracer itself decides what a batch of rays may meet.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use super::cull::Cone;
 
 /// What the rays of one tile depended on.
@@ -49,7 +49,7 @@ impl Beam {
         // The wider of the two as seen from the new axis: cos(a + b), while a + b is less than half a turn.
         let seen = |b: Beam| {
             let c = dot(axis, b.axis) - ROUNDING;
-            let sine = |c: f64| (1.0 - c * c).max(0.0).sqrt();
+            let sine = |c: f64| larger(1.0 - c * c, 0.0).sqrt();
             if c < -b.cos { -1.0 } else { c * b.cos - sine(c) * sine(b.cos) - ROUNDING }
         };
         let cos = if seen(self) < seen(o) { seen(self) } else { seen(o) };

@@ -35,6 +35,18 @@ pub struct LinearMap {
     pub local_from_world: [[f64; 3]; 3],
     /// Local vectors to world ones.
     pub world_from_local: [[f64; 3]; 3],
+    /// Whether it only exchanges axes and signs: a mirror, a quarter turn. Such a map is exact, and normals keep their length.
+    pub exchange: bool,
+}
+
+impl LinearMap {
+    /// The map with these rows and its inverse's.
+    pub fn new(world_from_local: [[f64; 3]; 3], local_from_world: [[f64; 3]; 3]) -> LinearMap {
+        let exchange = world_from_local.as_flattened().iter().all(|x| *x == 0.0 || x.abs() == 1.0)
+            && world_from_local.iter().all(|row| row.iter().filter(|x| **x != 0.0).count() == 1);
+        let exchange = exchange && std::env::var_os("MUT_FLAG").is_none();
+        LinearMap { local_from_world, world_from_local, exchange }
+    }
 }
 
 impl Frame {
@@ -46,7 +58,7 @@ impl Frame {
             Some(k) => Axes::Cyclic(k),
             None => {
                 let inverse = world_from_local.inverse().unwrap_or(Affine::IDENTITY); // a valid scene has no singular map
-                Axes::Linear(add(LinearMap { local_from_world: inverse.linear_f64(), world_from_local: rows }))
+                Axes::Linear(add(LinearMap::new(rows, inverse.linear_f64())))
             }
         };
         Frame { centre: world_from_local.shift.map(|s| s.hi), centre_lo: world_from_local.shift.map(|s| s.lo), axes }
@@ -112,6 +124,7 @@ impl Frame {
     pub fn normal_to_world<R: Real>(&self, maps: &[LinearMap], n: [R; 3]) -> [R; 3] {
         match self.axes {
             Axes::Cyclic(_) => self.vector_to_world(maps, n),
+            Axes::Linear(m) if maps[m as usize].exchange => self.vector_to_world(maps, n),
             Axes::Linear(m) => {
                 let a = &maps[m as usize].local_from_world;
                 let w: [R; 3] = three(|j| dot(three(|i| R::splat(a[i][j])), n));

@@ -4,6 +4,7 @@ use super::bounds::smaller;
 use super::pattern::{PatternNode, PatternTable, Rows};
 use super::texture::Texture;
 use crate::math::Affine;
+use crate::scene::range::SHINIEST;
 use crate::scene::{ImageId, Material, PatternId, PatternKind, Scene};
 use std::collections::HashMap;
 
@@ -127,7 +128,11 @@ impl<'s> MaterialCompiler<'s> {
         }
         let mut shininess = black;
         if !specular.is_zero() {
-            shininess = self.slot(m.shininess);
+            shininess = match self.slot(m.shininess) {
+                // Arithmetic may have led a pattern out of what exponents may be.
+                Slot::Pattern(p) => self.push(PatternNode::Within(p, 0.0, SHINIEST)),
+                constant => constant,
+            };
         }
         let (reflect, transmit) = (self.slot(m.reflect), self.slot(m.transmit));
         let lit = !(diffuse.is_zero() && specular.is_zero());

@@ -23,6 +23,17 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Side of a tile in pixels, 1 to 32; for tests: never changes a bit of the picture.
     pub tile: u32,
+    /// Instructions of the processor; for tests: never changes a bit of the picture.
+    pub instructions: Instructions,
+}
+
+/// Which instructions of the processor the tracer uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instructions {
+    /// The best that this machine has.
+    Best,
+    /// Those that every processor of its family has. Where fused multiply-add isn't among them, the library stands in.
+    Common,
 }
 
 /// A part of the picture, in pixels; within it and not empty.
@@ -50,6 +61,7 @@ impl Options {
             crop: None,
             threads: None,
             tile: 16, // the best size measured: its rays and hits stay in the first-level cache
+            instructions: Instructions::Best,
         }
     }
     /// Side of a tile, within what batches have room for.

@@ -72,6 +72,8 @@ pub enum PatternNode {
     Add(u32, u32),
     /// Product.
     Multiply(u32, u32),
+    /// A pattern, cut off below and above.
+    Within(u32, f64, f64),
 }
 
 impl PatternNode {
@@ -97,7 +99,7 @@ impl PatternNode {
                 stops.iter().for_each(|s| visit(*s));
                 visit(*by);
             }
-            InSpace(child, _) | Mapped(child, _) | Turbulence(child, ..) => visit(*child),
+            InSpace(child, _) | Mapped(child, _) | Turbulence(child, ..) | Within(child, ..) => visit(*child),
         }
     }
 }
@@ -152,11 +154,11 @@ impl PatternTable {
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Noise(a, b, octaves, seed) => {
-                let [s] = R::each(p, |p| [unit_noise(p, *octaves, *seed)]);
+                let [s] = R::each(p, |p| [clamp01(unit_noise(p, *octaves, *seed))]);
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Cells(a, b, seed) => {
-                let [s] = R::each(p, |p| [cell_noise(p, *seed).clamp(0.0, 1.0)]);
+                let [s] = R::each(p, |p| [clamp01(cell_noise(p, *seed))]);
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Brick(mortar, brick, size, gap) => {
@@ -204,6 +206,9 @@ impl PatternTable {
                 let (x, y) = (self.eval(*a, at), self.eval(*b, at));
                 three(|i| x[i] * y[i])
             }
+            PatternNode::Within(child, least, most) => {
+                each3(self.eval(*child, at), |x: R| x.max(R::splat(*least)).min(R::splat(*most)))
+            }
         }
     }
 
@@ -245,6 +250,7 @@ impl PatternTable {
     }
 }
 
+/// `x` between 0 and 1; 0 for what isn't a number, as noise is where a point is too far away for its cell to have one.
 fn clamp01<R: Real>(x: R) -> R {
     x.max(R::zero()).min(R::one())
 }

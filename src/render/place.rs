@@ -1,8 +1,9 @@
 //! Puts a shape of the scene into the world: finds its frame, its size there, its box, and the way back to the space in
 //! which it was made.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use super::shape::{Kind, Ring, Tube};
+use crate::math::affine::reciprocal_power;
 use crate::math::{Affine, Dd};
 use crate::scene::Shape;
 use glam::DVec3;
@@ -52,6 +53,25 @@ impl Rescale {
     }
 }
 
+impl Placed {
+    /// Moves the frame's origin to `offset` from where `corner` is in the world. What rounding left out of a size is then missing
+    /// at the far end, and what stands on a table stands exactly on it: in one place the table is seen, by number.
+    fn hang(&mut self, world: &Affine, corner: DVec3, offset: [f64; 3]) {
+        let shift = world.apply_dd(corner.to_array().map(Dd::new));
+        self.world_from_local.shift = Affine { shift, ..self.world_from_local }.apply_dd(offset.map(Dd::new));
+    }
+
+    /// Coordinates of the faces across each axis, in the lengths in which the shape was made; NaN where there are none.
+    pub fn faces_as_made(&self) -> [[f64; 2]; 3] {
+        let faces = match (&self.rescale, &self.form) {
+            (Some(rescale), _) => rescale.faces,
+            (None, Form::Framed(kind)) => Rescale::new(1.0, kind).faces,
+            (None, Form::Triangle(..)) => [[(f64::NAN, f64::NAN); 2]; 3],
+        };
+        faces.map(|across| across.map(|(_, made)| made))
+    }
+}
+
 /// Relative size below which an entry of a map is the rounding error of a rotation: 512 roundings.
 pub const RESIDUE: f64 = 512.0 * f64::EPSILON;
 
@@ -68,8 +88,14 @@ pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
         }
         Shape::Box { from, to } => {
             let half = ((*to - *from) * 0.5).to_array();
-            let centre = Affine::translation(*from + (*to - *from) * 0.5);
-            vec![framed(Kind::Cuboid(half), centre, Some([[0.0; 3], half]), world_from_object)]
+            // In double-double: a box far out has its middle between two numbers.
+            let mut centre = Affine::translation(*from);
+            centre.shift = std::array::from_fn(|i| centre.shift[i] + Dd::new(half[i]));
+            let mut placed = framed(Kind::Cuboid(half), centre, Some([[0.0; 3], half]), world_from_object);
+            if let Form::Framed(Kind::Cuboid(half)) = placed.form {
+                placed.hang(world_from_object, *from, half);
+            }
+            vec![placed]
         }
         Shape::Cylinder { from, to, r, caps } => vec![tube(*from, *to, *r, *r, *caps, world_from_object)],
         Shape::Cone { from, to, r, top, caps } => vec![tube(*from, *to, *r, *top, *caps, world_from_object)],
@@ -126,7 +152,13 @@ fn tube(from: DVec3, to: DVec3, r: f64, top: f64, caps: bool, world_from_object:
     let kind = Kind::Tube(Tube { radius, slope, bottom, top: upper, caps });
     let widest = if r > top { r } else { top };
     let extent = [[0.0, 0.5 * (bottom + upper), 0.0], [widest, 0.5 * height, widest]];
-    framed(kind, axis_frame(origin, to - from), Some(extent), world_from_object)
+    let mut placed = framed(kind, axis_frame(origin, to - from), Some(extent), world_from_object);
+    if top == 0.0
+        && let Form::Framed(Kind::Tube(cone)) = placed.form
+    {
+        placed.hang(world_from_object, from, [0.0, -cone.bottom, 0.0]);
+    }
+    placed
 }
 
 fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, world: &Affine) -> Placed {
@@ -175,7 +207,7 @@ fn triangle(points: [DVec3; 3], normals: Option<[DVec3; 3]>, world: &Affine) -> 
     for (r, (x, y)) in e1.to_array().into_iter().zip(e2.to_array()).enumerate() {
         made.linear[r] = [Dd::new(x), Dd::new(0.0), Dd::new(y)];
     }
-    let scale = largest(e1).max(largest(e2));
+    let scale = larger(largest(e1), largest(e2));
     let n = (e1 / scale).cross(e2 / scale);
     Placed {
         form: Form::Triangle(v, to_world(n), normals.map(|ns| ns.map(to_world))),
@@ -203,7 +235,10 @@ fn similarity(map: &Affine) -> Option<f64> {
     let even = close(column(1, 1), s2) && close(column(2, 2), s2);
     let square = [(0, 1), (0, 2), (1, 2)].into_iter().all(|(a, b)| close(column(a, b), 0.0));
     let s = s2.sqrt();
-    (even && square).then_some(if close(s2, 1.0) && s2 != 1.0 { 1.0 } else { s })
+    // A rotation's rounding error isn't a scale, whatever power of two is its size.
+    let power = 1.0 / reciprocal_power(s);
+    let near_power = [power, 2.0 * power].into_iter().find(|p| close(s2, p * p));
+    (even && square).then_some(near_power.unwrap_or(s))
 }
 
 /// A right-handed frame at `origin` whose y axis points along `axis`; the world's own axes where one of them does.

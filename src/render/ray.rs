@@ -17,6 +17,14 @@ pub struct LocalRay<R> {
 }
 
 impl<R: Real> LocalRay<R> {
+    /// The way along an axis to the coordinate `level`, rounded once: surfaces in one plane are met at one t, wherever their
+    /// frames have their origins.
+    #[inline(always)]
+    pub fn way_to(&self, axis: usize, level: R) -> R {
+        let (way, error) = level.two_sum(-self.o[axis]);
+        way + (error - self.o_lo[axis])
+    }
+
     /// The point at `t`: one rounding on the large part, so nothing is lost to the distance of the origin.
     #[inline(always)]
     pub fn at(&self, t: R) -> [R; 3] {

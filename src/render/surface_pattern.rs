@@ -66,7 +66,12 @@ impl<'w> PatternFrame<'w> {
         let mut at = PatternPoint { p, local, spaces, normal: n, from_centre: p, half_height: 1.0 };
         if let Some(MadeSpace { detail: Some(detail), .. }) = self.made {
             at.normal = turned(&detail.made_normal_from_world, n);
-            at.from_centre = minus(p, splat3(detail.centre));
+            // Not by way of the point: a shape made far from the origin keeps its bits.
+            let shift = detail.from_centre;
+            at.from_centre = match spaces.first() {
+                Some([x, y, z]) => apply(&[(x, 0), (y, 1), (z, 2)].map(|(r, i)| [r[0], r[1], r[2], shift[i]]), local),
+                None => local,
+            };
             at.half_height = detail.half_height;
         }
         at

@@ -38,9 +38,11 @@ impl Texture {
         self.texels.len() * 3 + size_of::<[f64; 256]>()
     }
 
-    /// The linear colour at (u, v); (0, 0) is the lower left corner of the picture, (1, 1) the upper right.
+    /// The linear colour at (u, v); (0, 0) is the lower left corner of the picture, (1, 1) the upper right. A coordinate that
+    /// isn't finite, as of a point too far away for a number, counts as the picture's left or upper edge.
     pub fn at(&self, u: f64, v: f64, filter: Filter, edges: [Edge; 2]) -> [f64; 3] {
-        let (x, y) = (u * self.width as f64, (1.0 - v) * self.height as f64);
+        let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+        let (x, y) = (finite(u * self.width as f64), finite((1.0 - v) * self.height as f64));
         match filter {
             Filter::Nearest => self.texel(x.floor(), y.floor(), edges),
             Filter::Bilinear => {
@@ -89,6 +91,12 @@ mod tests {
         assert_eq!(t.at(0.0, 1.0, Filter::Bilinear, clamp), [1.0, 0.0, 0.0]);
         assert_eq!(t.at(0.0, 0.75, Filter::Bilinear, [Edge::Repeat; 2]), [0.5, 0.5, 0.0]);
         assert_eq!(t.at(-3.75, 7.75, Filter::Nearest, [Edge::Repeat; 2]), [1.0, 0.0, 0.0]);
+        for filter in [Filter::Nearest, Filter::Bilinear] {
+            for far in [f64::NAN, f64::INFINITY] {
+                assert!(t.at(far, far, filter, [Edge::Repeat; 2]).iter().all(|x| x.is_finite()));
+                assert_eq!(t.at(far, far, filter, clamp), [1.0, 0.0, 0.0]);
+            }
+        }
         assert_eq!(t.at(f64::NAN, 1e300, Filter::Nearest, clamp), [1.0, 0.0, 0.0]);
     }
 }

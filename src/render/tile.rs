@@ -8,7 +8,19 @@ use super::options::{Crop, Options};
 use super::tracer::Tracer;
 use super::world::World;
 use crate::math::{Elem, Lane};
+use crate::scene::AntiAliasing;
 use std::sync::atomic::AtomicBool;
+
+/// What pixel (x, y) sees in the first of its rays, in 64-bit numbers: the picture before its film rounds it.
+pub fn radiance(world: &World, options: &Options, x: u32, y: u32) -> [f64; 3] {
+    let one = Options { aa: AntiAliasing::Off, tile: 1, ..options.clone() };
+    let cancel = AtomicBool::new(false);
+    let mut worker = TileWorker::<f64>::new(world, &one, &cancel, Recorder::off());
+    match worker.sum_up(Crop { x, y, width: 1, height: 1 }) {
+        true => worker.sums[0],
+        false => world.background,
+    }
+}
 
 /// A worker that renders tiles.
 pub struct TileWorker<'w, L: Lane> {
@@ -39,7 +51,7 @@ impl<'w, L: Lane> TileWorker<'w, L> {
     pub fn render(&mut self, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
         let n = (tile.width * tile.height) as usize;
         let samples = self.side * self.side;
-        if !self.find_candidates(tile) {
+        if !self.sum_up(tile) {
             // Nothing here: the same sums as below, of one pixel, for all.
             let background = self.world.background.map(|c| L::Elem::from_f64(c).to_f64());
             let mut sum = [0.0; 3];
@@ -52,11 +64,28 @@ impl<'w, L: Lane> TileWorker<'w, L> {
             self.tracer.recorder().saw_background();
             return;
         }
+        if self.tracer.is_cancelled() {
+            return;
+        }
+        for (row, sums) in rows.iter_mut().zip(self.sums.chunks(tile.width as usize)) {
+            for (pixel, sum) in row.iter_mut().zip(sums) {
+                *pixel = resolve(*sum, samples);
+            }
+        }
+    }
+
+    /// Adds up the rays of each pixel of `tile`, until cancelled; false where they all see the background.
+    #[inline(always)]
+    fn sum_up(&mut self, tile: Crop) -> bool {
+        if !self.find_candidates(tile) {
+            return false;
+        }
+        let n = (tile.width * tile.height) as usize;
         self.sums[..n].fill([0.0; 3]);
         for sy in 0..self.side {
             for sx in 0..self.side {
                 if self.tracer.is_cancelled() {
-                    return;
+                    return true;
                 }
                 self.camera_rays(tile, [sx, sy]);
                 self.tracer.recorder().sample();
@@ -72,11 +101,7 @@ impl<'w, L: Lane> TileWorker<'w, L> {
                 }
             }
         }
-        for (row, sums) in rows.iter_mut().zip(self.sums.chunks(tile.width as usize)) {
-            for (pixel, sum) in row.iter_mut().zip(sums) {
-                *pixel = resolve(*sum, samples);
-            }
-        }
+        true
     }
 
     /// Finds what the tile's camera rays may meet; false where that is nothing.

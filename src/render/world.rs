@@ -8,7 +8,7 @@ use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
 use super::census::{PrimitiveKey, same_geometry};
-use super::digest::{content_key, material_digests};
+use super::digest::{LengthKey, MaterialDigest, material_digests};
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
 use super::pattern::PatternTable;
@@ -16,7 +16,8 @@ use super::place::{Form, Placed, Rescale, place, world_bounds};
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Primitive, TriangleData};
 use super::touch::{lies_on, neighbourhood};
-use crate::math::Affine;
+use crate::math::real::three;
+use crate::math::{Affine, Dd};
 use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
@@ -58,7 +59,8 @@ pub(super) struct MadeDetail {
     pub(super) made_normal_from_world: [[f64; 3]; 3],
     /// And back.
     pub(super) world_normal_from_made: [[f64; 3]; 3],
-    pub(super) centre: [f64; 3],
+    /// From the shape's centre to the origin of its frame, in the space in which it was made.
+    pub(super) from_centre: [f64; 3],
     pub(super) half_height: f64,
 }
 
@@ -89,7 +91,7 @@ struct Entry {
 /// How a shape's own space lies.
 pub(super) struct Made {
     pub(super) world_from_object: Affine,
-    pub(super) centre: [f64; 3],
+    pub(super) centre: [Dd; 3],
     pub(super) half_height: f64,
 }
 
@@ -113,10 +115,11 @@ impl World {
         let go_on = || if cancel.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         let to_camera = Affine::translation(-camera.from);
         let (mut shapes, mut lights) = (Vec::new(), Vec::new());
-        let visited = scene.try_for_each_instance(|i| {
+        // From the camera down: what moves both scene and camera cancels first, exactly.
+        let visited = scene.try_for_each_instance_from(&to_camera, |i| {
             match &scene.node(i.node).kind {
                 NodeKind::Light(light) => {
-                    let at = to_camera.compose(&i.world_from_object).apply(light.at).to_array();
+                    let at = i.world_from_object.apply(light.at).to_array();
                     let color = (light.color * light.power).0;
                     if color != [0.0; 3] {
                         lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
@@ -130,7 +133,7 @@ impl World {
         if visited.is_break() {
             return None;
         }
-        lights.sort_by_key(|l| content_key(l.at.iter().chain(&l.color).map(|x| x.to_bits())));
+        lights.sort_by_cached_key(|l| LengthKey::new(l.color.into_iter(), l.at.into_iter()));
 
         let mut world = World {
             primitives: Vec::new(),
@@ -148,15 +151,15 @@ impl World {
             background: scene.background.0,
             ambient: scene.ambient.0,
         };
-        let numbers = world.compile_materials(scene, &shapes);
         let digests = material_digests(scene);
+        let numbers = world.compile_materials(scene, &shapes, &digests);
         let mut entries = Vec::with_capacity(shapes.len());
         for instance in shapes {
             let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
             if go_on().is_break() {
                 return None;
             }
-            let world_from_object = to_camera.compose(&instance.world_from_object);
+            let world_from_object = instance.world_from_object;
             for placed in place(shape, &world_from_object) {
                 let (centre, half_height) = middle(shape);
                 let made = Made { world_from_object, centre, half_height };
@@ -188,16 +191,23 @@ impl World {
         Some((world, keys))
     }
 
-    /// Compiles the materials that shapes wear; gives each scene material its number here.
-    fn compile_materials(&mut self, scene: &Scene, shapes: &[Instance]) -> Vec<u32> {
+    /// Compiles the materials that shapes wear; gives each scene material its number here. They are compiled in the order of
+    /// their content: which patterns get a space of their own, where there are too many, isn't left to the text.
+    fn compile_materials(&mut self, scene: &Scene, shapes: &[Instance], digests: &[MaterialDigest]) -> Vec<u32> {
+        let mut worn: Vec<usize> = Vec::new();
         let mut numbers = vec![u32::MAX; scene.materials.len()];
-        let mut compiler = MaterialCompiler::new(scene);
         for i in shapes {
             let number = &mut numbers[i.material.0 as usize];
             if *number == u32::MAX {
-                *number = self.materials.len() as u32;
-                self.materials.push(compiler.compile(scene.material(i.material), !self.lights.is_empty()));
+                *number = 0;
+                worn.push(i.material.0 as usize);
             }
+        }
+        worn.sort_by_key(|&m| digests[m].all);
+        let mut compiler = MaterialCompiler::new(scene);
+        for m in worn {
+            numbers[m] = self.materials.len() as u32;
+            self.materials.push(compiler.compile(&scene.materials[m], !self.lights.is_empty()));
         }
         self.patterns = compiler.finish();
         numbers
@@ -216,7 +226,7 @@ impl World {
                 MadeDetail {
                     made_normal_from_world: transposed(&made.world_from_object),
                     world_normal_from_made: transposed(&back),
-                    centre: made.centre,
+                    from_centre: three(|i| (placed.made_from_local.shift[i] - made.centre[i]).round()),
                     half_height: made.half_height,
                 }
             });
@@ -231,7 +241,7 @@ impl World {
             Form::Framed(kind) => kind,
             Form::Triangle(v, n, shading) => {
                 self.triangles.push(TriangleData { v, n, shading });
-                bounded.push((id, v.into_iter().fold(Bounds::EMPTY, Bounds::with)));
+                bounded.push((id, Bounds::of_points(v)));
                 Kind::Triangle(self.triangles.len() as u32 - 1)
             }
         };
@@ -266,10 +276,34 @@ impl World {
         self.lights = lights;
     }
 
+    /// All surfaces, by number.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The tree over the bounded ones.
+    pub fn tree(&self) -> &Bvh {
+        &self.bvh
+    }
+
     /// The tables that primitives refer to.
     #[inline(always)]
-    pub(super) fn tables(&self) -> Tables<'_> {
+    pub fn tables(&self) -> Tables<'_> {
         Tables { maps: &self.maps, triangles: &self.triangles }
+    }
+
+    /// Number of surfaces.
+    pub fn primitive_count(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
+    pub fn without_tree(mut self) -> World {
+        // Planes of which nothing can say that a ray doesn't meet them.
+        let everywhere = |&(id, _): &(u32, Bounds)| Unbounded { id, n: [0.0; 3], offset: 0.0 };
+        self.unbounded.extend(self.bvh.leaves().iter().map(everywhere));
+        self.bvh = Bvh::default();
+        self
     }
 
     /// The material of primitive `id`.
@@ -333,19 +367,22 @@ fn grafted(
 }
 
 /// Centre and half height of a shape in the space in which it is made; a plane's point and ½.
-fn middle(shape: &crate::scene::Shape) -> ([f64; 3], f64) {
+fn middle(shape: &crate::scene::Shape) -> ([Dd; 3], f64) {
     use crate::scene::Shape::*;
+    let exactly = |p: &DVec3| p.to_array().map(Dd::new);
     let of_points = |points: &[DVec3]| {
         let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-        (((lo + hi) * 0.5).to_array(), 0.5 * (hi.y - lo.y))
+        // The middle of two numbers far out may lie between two numbers.
+        let half = ((hi - lo) * 0.5).to_array();
+        (three(|i| exactly(&lo)[i] + Dd::new(half[i])), half[1])
     };
     let (centre, half) = match shape {
-        Sphere { at, r } => (at.to_array(), *r),
-        Plane { through, .. } => (through.to_array(), 0.5),
+        Sphere { at, r } => (exactly(at), *r),
+        Plane { through, .. } => (exactly(through), 0.5),
         Box { from, to } => of_points(&[*from, *to]),
-        Disc { at, r, .. } => (at.to_array(), *r),
+        Disc { at, r, .. } => (exactly(at), *r),
         Cylinder { from, to, .. } | Cone { from, to, .. } => of_points(&[*from, *to]),
-        Torus { at, tube, .. } => (at.to_array(), *tube),
+        Torus { at, tube, .. } => (exactly(at), *tube),
         Triangle { points, .. } => of_points(points),
         Tetrahedron { points } => of_points(points),
     };

@@ -138,10 +138,19 @@ impl Scene {
     }
 
     /// As [`for_each_instance`](Scene::for_each_instance), until `visit` breaks off.
-    pub fn try_for_each_instance<B>(&self, mut visit: impl FnMut(Instance) -> ControlFlow<B>) -> ControlFlow<B> {
+    pub fn try_for_each_instance<B>(&self, visit: impl FnMut(Instance) -> ControlFlow<B>) -> ControlFlow<B> {
+        self.try_for_each_instance_from(&Affine::IDENTITY, visit)
+    }
+
+    /// As [`try_for_each_instance`](Scene::try_for_each_instance), with the whole scene below a transform: of the camera, say.
+    pub fn try_for_each_instance_from<B>(
+        &self,
+        world_from_scene: &Affine,
+        mut visit: impl FnMut(Instance) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
         // Groups of nothing can multiply to more than anyone waits for.
         let counts = self.instance_counts();
-        let mut around = vec![(self.roots.iter(), Affine::IDENTITY, MaterialId(0))];
+        let mut around = vec![(self.roots.iter(), *world_from_scene, MaterialId(0))];
         while let Some((nodes, world_from_object, material)) = around.last_mut() {
             let Some(node) = nodes.next() else {
                 around.pop();

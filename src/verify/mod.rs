@@ -4,21 +4,30 @@
 //! each beside the bound that it must keep. `cargo test` runs all of them in [`Size::Quick`], `rtdsl verify --extremes` in
 //! [`Size::Long`].
 
-pub mod contact;
+mod contact;
 mod draw;
-pub mod enclosure;
+mod enclosure;
+mod energy;
 mod histogram;
 mod outcome;
+pub mod picture;
+mod picture_check;
+mod programme;
 pub mod quadric;
-pub mod respawn;
+mod reach;
+mod respawn;
 pub mod specimen;
+mod stage;
 mod tally;
 pub mod tangent;
 pub mod torus;
-pub mod watertight;
+mod tree;
+mod watertight;
 
 pub use histogram::Histogram;
 pub use outcome::{Bound, Figure, Outcome};
+pub use picture_check::{PictureCheck, Subject, hashed};
+pub use programme::{pictures, programme};
 
 /// How many cases are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use crate::math::{Affine, Real};
 use crate::render::frame::{Frame, LinearMap};
 use crate::render::ray::Own;
 use crate::render::shape::primitive::{Surface, Tables};
-use crate::render::shape::{Kind, Primitive, TriangleData};
+use crate::render::shape::{Kind, Primitive, TriangleData, Visit};
 
 /// A shape and the tables that it needs.
 #[derive(Clone, Debug)]
@@ -72,8 +72,13 @@ impl Specimen {
                 found.count += 1;
             }
         };
-        self.primitive.crossings::<R, false>(self.tables(), o, d, own, &mut keep);
+        self.visit(o, d, own, &mut keep);
         found
+    }
+
+    /// The crossings as the kernel shows them.
+    pub fn visit<R: Real>(&self, o: [R; 3], d: [R; 3], own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+        self.primitive.crossings::<R, false>(self.tables(), o, d, own, visit);
     }
 
     /// The crossings of a ray: those at t > 0.

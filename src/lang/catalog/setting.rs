@@ -5,7 +5,7 @@ use crate::lang::build::Build;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Run, Ty, Word, optional, required};
-use crate::scene::{AntiAliasing, Camera, Color, Precision, Projection, Settings, range};
+use crate::scene::{AntiAliasing, Camera, Precision, Projection, Settings, range};
 
 pub const WORDS: &[Word] = &[
     Word {
@@ -33,7 +33,7 @@ pub const WORDS: &[Word] = &[
     Word {
         name: "background",
         kind: Kind::Setting,
-        params: &[required("color", Ty::Color, "what a ray sees that meets nothing")],
+        params: &[required("color", Ty::Color, "what a ray sees that meets nothing").light()],
         doc: "The color behind everything, black unless given.",
         example: "sphere()\nbackground(skyblue)\nlight(at: [4, 8, 6])",
         run: Run::Call(|host, a| {
@@ -45,12 +45,12 @@ pub const WORDS: &[Word] = &[
     Word {
         name: "ambient",
         kind: Kind::Setting,
-        params: &[required("level", Ty::Level, "a linear amount of light, or its color").at_least(0.0)],
+        params: &[required("level", Ty::Level, "a linear amount of light, or its color").at_least(0.0).light()],
         doc: "Light that reaches every point, shadows included; 0.1 unless given.",
         example: "sphere()\nambient(0.2)\nlight(at: [4, 8, 6])",
         run: Run::Call(|host, a| {
             once(host, "ambient")?;
-            host.build().scene.ambient = if let Value::Number(n) = a[0] { Color::linear_gray(n) } else { a.color(0) };
+            host.build().scene.ambient = a.level(0);
             Ok(Value::None)
         }),
     },
@@ -120,7 +120,11 @@ fn camera(host: &mut dyn Host, a: &[Value]) -> Outcome {
         return Err(Fault::new("the camera looks at itself: `from` and `at` are the same point").on(2).into());
     }
     if !range::is_supported(size) {
-        return Err(Fault::new("`from` and `at` of the camera are too far apart").on(2).into());
+        let how = if size > range::LARGEST { "far apart" } else { "close together" };
+        return Err(Fault::new(format!("`from` and `at` of the camera are too {how}"))
+            .note("their distance is from 1e-140 to 1e140")
+            .on(2)
+            .into());
     }
     let across = (view / size).normalize().cross((up / up.abs().max_element()).normalize());
     // The rounding of the two directions: below it, nothing is left of a sideways direction.

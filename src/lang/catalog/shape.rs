@@ -160,9 +160,9 @@ fn make(host: &mut dyn Host, a: &[Value], shape: Shape) -> Outcome {
 fn plane(host: &mut dyn Host, a: &[Value]) -> Outcome {
     let axes: Vec<usize> = (0..3).filter(|i| a.given(*i)).collect();
     let (through, normal) = match (&axes[..], a.given(3), a.given(4)) {
-        ([0], false, false) => (DVec3::Y * a.number(0), DVec3::Y),
-        ([1], false, false) => (DVec3::X * a.number(1), DVec3::X),
-        ([2], false, false) => (DVec3::Z * a.number(2), DVec3::Z),
+        ([0], false, false) => (DVec3::new(0.0, a.number(0), 0.0), DVec3::Y),
+        ([1], false, false) => (DVec3::new(a.number(1), 0.0, 0.0), DVec3::X),
+        ([2], false, false) => (DVec3::new(0.0, 0.0, a.number(2)), DVec3::Z),
         ([], true, true) => (a.vec3(3), a.vec3(4)),
         ([], false, true) => (DVec3::ZERO, a.vec3(4)),
         ([], true, false) => return Err(Fault::new("a plane through a point needs a `normal` too").into()),
@@ -232,6 +232,10 @@ fn cone(host: &mut dyn Host, a: &[Value]) -> Outcome {
     if r == top {
         let fault = Fault::new("`r` and `top` of a cone must differ").on(3);
         return Err(if r == 0.0 { fault } else { fault.label("write a `cylinder`") }.into());
+    }
+    // The cone's formulas square its slope.
+    if (r - top).abs() / (to - from).abs().max_element() > range::LARGEST {
+        return Err(Fault::new("this cone is too flat for its width").note("write a `disc`").into());
     }
     make(host, a, Shape::Cone { from, to, r, top, caps: a.is_true(4) })
 }

@@ -61,7 +61,7 @@ pub const WORDS: &[Word] = &[
         kind: Kind::Transform,
         params: &[
             required("pattern", Ty::Pattern, "comes before `|>`"),
-            required("amount", Ty::Number, "about the largest displacement").at_least(0.0),
+            required("amount", Ty::Length, "about the largest displacement").at_least(0.0),
             OCTAVES,
             SEED,
         ],

@@ -15,16 +15,24 @@ impl Builder<'_> {
         let mut parts = pair.into_inner();
         let digits = parts.next().map_or("", |p| p.as_str());
         let value: f64 = digits.replace('_', "").parse().unwrap_or(f64::INFINITY);
+        let too_large = || Diagnostic::error("this number is too large").at(span, "the largest is about 1.8e308");
         if !value.is_finite() {
-            return Err(Diagnostic::error("this number is too large").at(span, "the largest is about 1.8e308"));
+            return Err(too_large());
         }
         let Some(unit) = parts.next() else {
             return self.make(span, 0, ExprKind::Number(value));
         };
+        let angle = |degrees: f64| {
+            if degrees.is_finite() {
+                Ok(ExprKind::Angle(degrees))
+            } else {
+                Err(too_large().note("angles are kept in degrees"))
+            }
+        };
         let kind = match unit.as_str() {
             "deg" => ExprKind::Angle(value),
-            "turn" => ExprKind::Angle(value * 360.0),
-            "rad" => ExprKind::Angle(value.to_degrees()),
+            "turn" => angle(value * 360.0)?,
+            "rad" => angle(value.to_degrees())?,
             "%" => ExprKind::Number(value / 100.0),
             other => {
                 let span = self.span(&unit);

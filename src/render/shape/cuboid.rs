@@ -16,11 +16,11 @@ pub(super) fn crossings<R: Real>(half: [f64; 3], ray: &LocalRay<R>, own: Option<
     let mut leave: Wall<R> = Wall::at(f64::INFINITY);
     let mut inside = zero.same(zero);
     for (axis, &extent) in half.iter().enumerate() {
-        let (h, o, lo, d) = (R::splat(extent), ray.o[axis], ray.o_lo[axis], ray.d[axis]);
+        let (h, d) = (R::splat(extent), ray.d[axis]);
         let up = zero.lt(d);
         let level = d.same(zero);
         // Along the slab it is inside throughout or not at all; the quotients there are not used.
-        let (to_lower, to_upper) = ((-h - o) - lo, (h - o) - lo);
+        let (to_lower, to_upper) = (ray.way_to(axis, -h), ray.way_to(axis, h));
         inside = inside & (!level | (to_lower.le(zero) & zero.le(to_upper)));
         let inverse = R::one() / d;
         let lower = Wall { tau: (-h - m[axis]) * inverse, to: to_lower, d, part: R::splat(2.0 * axis as f64) };

@@ -47,10 +47,9 @@ impl Quadric for Tube {
 pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let zero = R::zero();
     // Between the planes. Crossings are compared by τ, which is as good from afar; t is taken from the ray's own origin.
-    let (o, dy) = (ray.o[1], ray.d[1]);
+    let dy = ray.d[1];
     let (bottom, top) = (R::splat(tube.bottom), R::splat(tube.top));
-    let to_bottom = (bottom - o) - ray.o_lo[1];
-    let to_top = (top - o) - ray.o_lo[1];
+    let (to_bottom, to_top) = (ray.way_to(1, bottom), ray.way_to(1, top));
     let up = zero.lt(dy);
     let level = dy.same(zero);
     let level_inside = to_bottom.le(zero) & zero.le(to_top);

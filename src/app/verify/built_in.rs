@@ -1,0 +1,37 @@
+//! The scenes that are looked at where none is given: they are part of the program.
+
+use crate::app::Stop;
+use crate::app::load::{load, request};
+use crate::verify::Subject;
+use std::fs;
+use std::io;
+
+/// A scene's name, its text, and the hash of its small picture, which is the same on every machine.
+const SCENES: [(&str, &str, &str); 3] = [
+    ("cosc363.scene", include_str!("../../../examples/cosc363.scene"), ""),
+    ("extremes.scene", include_str!("../../../examples/extremes.scene"), ""),
+    ("patterns.scene", include_str!("../../../examples/patterns.scene"), ""),
+];
+
+/// A file that they show.
+const PICTURE: (&str, &[u8]) = ("assets/earth.png", include_bytes!("../../../examples/assets/earth.png"));
+
+/// The scenes, by way of a folder of their own, which is gone when this returns.
+///
+/// # Errors
+/// There is no place for temporary files.
+pub fn built_in() -> Result<Vec<Subject>, Stop> {
+    let no_place = |e: io::Error| Stop::system("there is no place for the built-in scenes", e);
+    let folder = tempfile::tempdir().map_err(no_place)?;
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("assets")).map_err(no_place)?;
+    fs::write(path(PICTURE.0), PICTURE.1).map_err(no_place)?;
+    SCENES
+        .iter()
+        .map(|&(name, text, hash)| {
+            fs::write(path(name), text).map_err(no_place)?;
+            let evaluated = load(&request(&path(name), &[], &[])?, false)?;
+            Ok(Subject { name: name.into(), scene: evaluated.scene, hash: Some(hash) })
+        })
+        .collect()
+}

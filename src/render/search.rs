@@ -1,0 +1,88 @@
+//! Whether the tree finds what testing every surface finds: the same t, to the bit, and the same surface.
+
+use super::batch::{HitColumns, NONE, RayBatch};
+use super::bounds::Bounds;
+use super::candidates::Candidates;
+use super::tracer::nearest;
+use super::world::World;
+use crate::math::hash::KeyedHash;
+use crate::math::real::three;
+
+/// What the tree and a search through everything found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Search {
+    /// Rays sent.
+    pub rays: u64,
+    /// Rays that met something.
+    pub hits: u64,
+    /// Rays of which t or the surface differ.
+    pub differing: u64,
+    /// The first of those: origin, relative to the camera, and direction.
+    pub first: Option<([f64; 3], [f64; 3])>,
+}
+
+impl Search {
+    /// Sends rays, drawn by lot from `lot`, into the world: from the camera's place and from anywhere around the surfaces, aimed
+    /// into their boxes, at the boxes' faces, edges and corners, and along the axes.
+    pub fn through(world: &World, rays: u64, lot: u64) -> Search {
+        let planes: Vec<u32> = world.unbounded.iter().map(|p| p.id).collect();
+        let by_tree = Candidates { ids: planes, tree: true };
+        let by_list = Candidates { ids: (0..world.primitives.len() as u32).collect(), tree: false };
+        let mut search = Search::default();
+        let (mut batch, mut found) = (RayBatch::<f64>::new(ROOM), [HitColumns::new(ROOM), HitColumns::new(ROOM)]);
+        while search.rays < rays {
+            batch.len = (rays - search.rays).min(ROOM as u64) as usize;
+            for i in 0..batch.len {
+                let (o, d) = ray(world, KeyedHash::new().with(lot).with(search.rays + i as u64));
+                for c in 0..3 {
+                    (batch.o[c][i], batch.d[c][i]) = (o[c], d[c]);
+                }
+                batch.source[i] = NONE;
+            }
+            nearest::<f64, false>(world, &by_tree, &batch, &mut found[0]);
+            nearest::<f64, false>(world, &by_list, &batch, &mut found[1]);
+            let what =
+                |hits: &HitColumns<f64>, i: usize| (hits.t[i].to_bits(), hits.id[i].to_bits(), hits.part[i].to_bits());
+            for i in 0..batch.len {
+                search.hits += (found[1].id[i] != NONE) as u64;
+                if what(&found[0], i) != what(&found[1], i) {
+                    search.differing += 1;
+                    search.first = search.first.or(Some((three(|c| batch.o[c][i]), three(|c| batch.d[c][i]))));
+                }
+            }
+            search.rays += batch.len as u64;
+        }
+        search
+    }
+}
+
+/// Rays at a time.
+const ROOM: usize = 256;
+
+/// Origin and direction.
+fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
+    let leaves = world.bvh.leaves();
+    let unit = |k: u64| key.with(k).unit();
+    let pick = |k: u64| leaves.get((unit(k) * leaves.len() as f64) as usize).map_or(ANYWHERE, |l| l.1);
+    // A coordinate between the faces of the box, on one of them, or beyond them by up to its size.
+    let within = |b: Bounds, k: u64, spread: f64| {
+        three(|i| {
+            let s = match (unit(k + i as u64) * 4.0) as u32 {
+                0 => 0.0,
+                1 => 1.0,
+                _ => (unit(k + 3 + i as u64) - 0.5) * spread + 0.5,
+            };
+            if s == 1.0 { b.hi[i] } else { b.lo[i] + s * (b.hi[i] - b.lo[i]) }
+        })
+    };
+    let o = if unit(1) < 0.25 { [0.0; 3] } else { within(pick(2), 10, 3.0) };
+    let target = within(pick(3), 20, 1.0);
+    let mut d = three(|i| target[i] - o[i]);
+    if unit(4) < 0.1 {
+        d[(unit(5) * 3.0) as usize] = 0.0;
+    }
+    (o, if d == [0.0; 3] { [0.0, 0.0, -1.0] } else { d })
+}
+
+/// For a world without bounded surfaces.
+const ANYWHERE: Bounds = Bounds { lo: [-1.0; 3], hi: [1.0; 3] };
