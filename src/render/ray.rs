@@ -1,7 +1,7 @@
 //! Rays as the kernels see them: in the frame of one shape, with what rounding left out of the origin.
 
 use crate::math::Real;
-use crate::math::real::{dot, three};
+use crate::math::real::{dot, each3, three};
 
 /// A ray in a shape's own frame. `t` is the same number as in the world.
 #[derive(Clone, Copy, Debug)]
@@ -36,16 +36,17 @@ impl<R: Real> LocalRay<R> {
     #[inline(always)]
     pub fn nearest(&self) -> (R, [R; 3]) {
         let t0 = -(dot(self.o, self.d) / dot(self.d, self.d));
-        (t0, self.moved(t0))
+        (t0, each3(self.moved(t0), |m| m.0))
     }
 
-    /// The line's point at `t0`, with what rounding left out put back (TwoProd, TwoSum).
+    /// The line's point at `t0` with what rounding left out put back (TwoProd, TwoSum), and what that leaves out still: along
+    /// a face even that decides where it is crossed.
     #[inline(always)]
-    pub fn moved(&self, t0: R) -> [R; 3] {
+    pub fn moved(&self, t0: R) -> [(R, R); 3] {
         three(|i| {
             let (p, e) = t0.two_prod(self.d[i]);
             let (s, se) = self.o[i].two_sum(p);
-            s + (se + (e + t0.mul_add(self.d_lo[i], self.o_lo[i])))
+            s.two_sum(se + (e + t0.mul_add(self.d_lo[i], self.o_lo[i])))
         })
     }
 }

@@ -11,20 +11,21 @@ use crate::render::ray::{LocalRay, Own, convex_exit};
 #[inline(always)]
 pub(super) fn crossings<R: Real>(half: [f64; 3], ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let zero = R::zero();
-    let (_, m) = ray.nearest();
+    let nearest = ray.moved(ray.nearest().0);
     let mut enter: Wall<R> = Wall::at(-f64::INFINITY);
     let mut leave: Wall<R> = Wall::at(f64::INFINITY);
     let mut inside = zero.same(zero);
     for (axis, &extent) in half.iter().enumerate() {
         let (h, d) = (R::splat(extent), ray.d[axis]);
+        let (m, m_lo) = nearest[axis];
         let up = zero.lt(d);
         let level = d.same(zero);
         // Along the slab it is inside throughout or not at all; the quotients there are not used.
         let (to_lower, to_upper) = (ray.way_to(axis, -h), ray.way_to(axis, h));
         inside = inside & (!level | (to_lower.le(zero) & zero.le(to_upper)));
         let inverse = R::one() / d;
-        let lower = Wall { tau: (-h - m[axis]) * inverse, to: to_lower, d, part: R::splat(2.0 * axis as f64) };
-        let upper = Wall { tau: (h - m[axis]) * inverse, to: to_upper, d, part: R::splat(2.0 * axis as f64 + 1.0) };
+        let lower = Wall { tau: ((-h - m) - m_lo) * inverse, to: to_lower, d, part: R::splat(2.0 * axis as f64) };
+        let upper = Wall { tau: ((h - m) - m_lo) * inverse, to: to_upper, d, part: R::splat(2.0 * axis as f64 + 1.0) };
         let (first, second) = (Wall::select(up, lower, upper), Wall::select(up, upper, lower));
         enter = Wall::select(!level & enter.tau.lt(first.tau), first, enter);
         leave = Wall::select(!level & second.tau.lt(leave.tau), second, leave);

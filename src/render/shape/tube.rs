@@ -7,7 +7,7 @@
 use super::quadric::{Coefficients, Crossing, Quadric, on_side, roots};
 use super::{BOTTOM, Point, SIDE, TOP, Visit};
 use crate::math::Real;
-use crate::math::real::three;
+use crate::math::real::{each3, three};
 use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// A profile: at height y the radius is `radius + slope·y`, for y from `bottom` to `top`. Nowhere in between negative.
@@ -61,10 +61,10 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let within = t_axis.min(t_bottom.max(t_top)).max(t_bottom.min(t_top));
     let t0 = R::select(level, t_axis, within);
     let from = ray.moved(t0);
-    let x = roots(ray, (t0, from), tube, on_side(&own, SIDE));
-    let m = from[1];
-    let at_bottom = Crossing { tau: (bottom - m) / dy, t: t_bottom };
-    let at_top = Crossing { tau: (top - m) / dy, t: t_top };
+    let x = roots(ray, (t0, each3(from, |m| m.0)), tube, on_side(&own, SIDE));
+    let (m, m_lo) = from[1];
+    let at_bottom = Crossing { tau: ((bottom - m) - m_lo) / dy, t: t_bottom };
+    let at_top = Crossing { tau: ((top - m) - m_lo) / dy, t: t_top };
     let (before_all, after_all) = (Crossing::never(-1.0), Crossing::never(1.0));
     let slab_in = Crossing::select(level, before_all, Crossing::select(up, at_bottom, at_top));
     let slab_out = Crossing::select(level, after_all, Crossing::select(up, at_top, at_bottom));
