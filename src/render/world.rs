@@ -276,9 +276,19 @@ impl World {
         self.lights = lights;
     }
 
+    /// All surfaces, by number.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The tree over the bounded ones.
+    pub fn tree(&self) -> &Bvh {
+        &self.bvh
+    }
+
     /// The tables that primitives refer to.
     #[inline(always)]
-    pub(super) fn tables(&self) -> Tables<'_> {
+    pub fn tables(&self) -> Tables<'_> {
         Tables { maps: &self.maps, triangles: &self.triangles }
     }
 

@@ -16,11 +16,12 @@ mod programme;
 pub mod quadric;
 mod reach;
 mod respawn;
-mod specimen;
+pub mod specimen;
 mod stage;
 mod tally;
 pub mod tangent;
 pub mod torus;
+mod tree;
 mod watertight;
 
 pub use histogram::Histogram;

@@ -1,7 +1,7 @@
 //! The list of all checks.
 
 use super::picture_check::{self, PictureCheck};
-use super::{Check, contact, enclosure, energy, quadric, respawn, tangent, torus, watertight};
+use super::{Check, contact, enclosure, energy, quadric, respawn, tangent, torus, tree, watertight};
 
 /// The checks of kernels and formulas, which need no scene.
 pub fn programme() -> Vec<Check> {
@@ -12,6 +12,7 @@ pub fn programme() -> Vec<Check> {
         watertight::CHECK,
         respawn::CHECK,
         contact::CHECK,
+        tree::CHECK,
         enclosure::CHECK,
         energy::CHECK,
     ]

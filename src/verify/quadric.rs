@@ -71,7 +71,8 @@ impl Family {
 
 /// A shape and a line that passes through its extent.
 pub struct Aimed {
-    pub(super) shape: Specimen,
+    /// The shape.
+    pub shape: Specimen,
     /// Origin.
     pub o: [f64; 3],
     /// Direction, of length 1 but for rounding.

@@ -31,7 +31,8 @@ pub const TOUCHED: [Touched; 3] = [Touched::Sphere, Touched::Cylinder, Touched::
 
 /// A line and a shape that it all but touches.
 pub struct Grazing {
-    pub(super) shape: Specimen,
+    /// The shape.
+    pub shape: Specimen,
     /// What the shape is, in its frame.
     pub kind: Kind,
     /// The frame's origin.

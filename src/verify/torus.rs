@@ -23,7 +23,8 @@ const AIM: f64 = 0.9;
 
 /// A torus and a line aimed at its tube.
 pub struct Aimed {
-    pub(super) shape: Specimen,
+    /// The shape.
+    pub shape: Specimen,
     /// The torus.
     pub ring: Ring,
     /// Its centre.
