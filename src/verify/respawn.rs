@@ -183,7 +183,7 @@ fn leave(which: usize, stand: Stand, case: u64, tally: &mut Tally) {
                 tally.fail(kind, case, say);
             }
         }
-        if build == Build::Hollow && case % 8 == 0 {
+        if build == Build::Hollow && case.is_multiple_of(8) {
             let exact = shape.ray(from.map(Dd::new), dir.map(Dd::new), None);
             if exact.as_slice().len() != twin.as_slice().len() {
                 tally.fail(INEXACT, case, || format!("{which} {stand:?} {case}, side {side}: {twin:?} for {exact:?}"));
@@ -198,7 +198,7 @@ fn is_right(build: Build, side: f64, n: usize) -> bool {
         (Build::Solid, true) | (Build::Open, true) | (Build::Flat, _) => n == 0,
         (Build::Solid, false) => n == 1,
         (Build::Open, false) => n <= 1,
-        (Build::Hollow, true) => n % 2 == 0,
+        (Build::Hollow, true) => n.is_multiple_of(2),
         (Build::Hollow, false) => n % 2 == 1,
     }
 }
