@@ -368,7 +368,7 @@ fn verify_as_text_json_and_markdown() {
     assert!(stdout.contains("\n| check | figure | value | bound | kept | spread |\n|---|"), "{stdout}");
 
     let (_, stderr) = desk.expect(2, "verify --only treless");
-    assert!(stderr.contains("did you mean `treeless`?") && stderr.contains("the checks are: energy"), "{stderr}");
+    assert!(stderr.contains("did you mean `treeless`?") && stderr.contains("the checks are: quadrics"), "{stderr}");
     desk.expect(1, "verify --only treeless wrong.scene");
     desk.expect(3, "verify --only treeless missing.scene");
 }

@@ -48,6 +48,14 @@ macro_rules! checks {
 }
 
 checks! {
+    quadrics,
+    tangents,
+    tori,
+    watertight,
+    leaving,
+    contact,
+    tree,
+    intervals,
     energy,
     powers,
     scales,

@@ -4,10 +4,10 @@
 //! alone (the white furnace), light through panes, mirrors that face each other, and Fresnel's formulas. Phong's highlight
 //! isn't reciprocal, so no swap of light and eye is asked of it; refraction is, and its way back is tried.
 
+use super::draw::Draw;
 use super::stage::{Stage, Surface};
 use super::tally::{Tally, ulp};
 use super::{Bound, Check, Figure, Outcome, Size};
-use crate::math::hash::KeyedHash;
 use crate::math::real::{Bool, Real, dot, minus};
 use crate::math::{Dd, fun};
 use crate::render::optics::{Refracted, dielectric};
@@ -84,7 +84,7 @@ fn run(size: Size) -> Outcome {
     for Form { what, try_one, share, bound } in &FORMS {
         let n = (size.pick(4_000, 200_000) as f64 * share) as u64;
         let tally = Tally::of(n, |case, tally| {
-            let error = try_one(Draw(KeyedHash::new().with_text(what).with(case), 0)).error();
+            let error = try_one(Draw::new(what, case)).error();
             tally.off(error);
             if *bound != Bound::None && !(error <= MOST) {
                 tally.fail(0, case, || format!("{what}: case {case} is off by {error:.2} ulp"));
@@ -98,25 +98,16 @@ fn run(size: Size) -> Outcome {
     outcome
 }
 
-/// Numbers of one case, one after another.
-struct Draw(KeyedHash, u64);
+/// A whole number from `a` to `b`.
+fn whole(draw: &mut Draw, a: u32, b: u32) -> u32 {
+    a + draw.below((b - a + 1) as u64) as u32
+}
 
-impl Draw {
-    /// Uniform between `a` and `b`.
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        self.1 += 1;
-        a + (b - a) * self.0.with(self.1).unit()
-    }
-    /// A whole number from `a` to `b`.
-    fn whole(&mut self, a: u32, b: u32) -> u32 {
-        self.between(a as f64, b as f64 + 1.0) as u32
-    }
-    /// A direction at most `degrees` from z, of unit length but for rounding.
-    fn about_z(&mut self, degrees: f64) -> DVec3 {
-        let (turn, lean) = (self.between(0.0, 360.0), self.between(0.0, degrees));
-        let (s, c) = (fun::sin_deg(lean), fun::cos_deg(lean));
-        DVec3::new(s * fun::cos_deg(turn), s * fun::sin_deg(turn), c)
-    }
+/// A direction at most `degrees` from z, of unit length but for rounding.
+fn about_z(draw: &mut Draw, degrees: f64) -> DVec3 {
+    let (turn, lean) = (draw.between(0.0, 360.0), draw.between(0.0, degrees));
+    let (s, c) = (fun::sin_deg(lean), fun::cos_deg(lean));
+    DVec3::new(s * fun::cos_deg(turn), s * fun::sin_deg(turn), c)
 }
 
 fn exact(v: DVec3) -> [Dd; 3] {
@@ -126,12 +117,12 @@ fn exact(v: DVec3) -> [Dd; 3] {
 /// ambient + diffuse × cosine.
 fn lit_plane(mut draw: Draw) -> Case {
     let mut stage = Stage::new();
-    let normal = draw.about_z(70.0);
+    let normal = about_z(&mut draw, 70.0);
     let through = DVec3::new(draw.between(-2.0, 2.0), draw.between(-2.0, 2.0), draw.between(-14.0, -8.0));
     // Where the ray along -z meets it.
     let (n, p) = (exact(normal), exact(through));
     let z = dot(n, p) / n[2];
-    let lamp = DVec3::Z * z.hi + draw.between(1.0, 30.0) * tilted(normal, draw.about_z(70.0));
+    let lamp = DVec3::Z * z.hi + draw.between(1.0, 30.0) * tilted(normal, about_z(&mut draw, 70.0));
     let (ambient, diffuse) = (draw.between(0.0, 1.0), draw.between(0.1, 1.0));
     stage.scene.ambient = Color::linear_gray(draw.between(0.0, 1.0));
     let surface = Surface { ambient, diffuse, ..Surface::default() };
@@ -159,7 +150,7 @@ fn furnace(mut draw: Draw) -> Case {
         let at = DVec3::new((cell % 3) as f64 - 1.0, (cell / 3 % 3) as f64 - 1.0, (cell / 9) as f64 - 1.0) * 4.0;
         let (clear, mirror) =
             (Surface { transmit: 1.0, ..Surface::default() }, Surface { reflect: 1.0, ..Surface::default() });
-        let surface = match draw.whole(0, 2) {
+        let surface = match whole(&mut draw, 0, 2) {
             0 => mirror,
             1 => clear,
             _ => Surface { ior: Some(1.0), ..clear },
@@ -178,7 +169,7 @@ fn panes(mut draw: Draw) -> Case {
     stage.shape(facing(-draw.between(10.0, 20.0)), Surface { diffuse, ..Surface::default() });
     stage.light(DVec3::Z * draw.between(1.0, 9.0));
     let mut light = Dd::new(diffuse);
-    for pane in 0..draw.whole(0, 4) {
+    for pane in 0..whole(&mut draw, 0, 4) {
         let transmit = draw.between(0.3, 1.0);
         stage.shape(facing(-1.0 - pane as f64), Surface { transmit, ..Surface::default() });
         light = light * Dd::new(transmit) * Dd::new(transmit);
@@ -196,7 +187,7 @@ fn mirrors(mut draw: Draw, most: u32) -> Case {
         stage.shape(wall, Surface { ambient: 1.0, reflect, ..Surface::default() });
     }
     stage.scene.cameras[0].at = DVec3::new(draw.between(-1.0, 1.0), draw.between(0.2, 1.0), -1.0);
-    let depth = draw.whole(0, most);
+    let depth = whole(&mut draw, 0, most);
     let sum = (0..depth).fold(Dd::ONE, |sum, _| Dd::ONE + Dd::new(reflect) * sum);
     Case::new(stage.seen(depth), sum)
 }
@@ -211,7 +202,7 @@ fn glass_ball(mut draw: Draw) -> Case {
     let beside = draw.between(0.0, 0.9) * r;
     let at = DVec3::new(beside, 0.0, -draw.between(3.0, 20.0));
     stage.shape(Shape::Sphere { at, r }, Surface { transmit: 1.0, ior: Some(ior), ..Surface::default() });
-    let depth = draw.whole(1, 12);
+    let depth = whole(&mut draw, 1, 12);
     let sine = Dd::new(beside) / Dd::new(r);
     let back = reflectance((Dd::ONE - sine * sine).sqrt(), Dd::new(ior));
     let inside = (1..depth).fold(Dd::ONE - back, |inside, _| inside * back);
@@ -229,7 +220,7 @@ const NORMAL: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A ray down to a surface, at most `degrees` from its normal, and a refractive index.
 fn arriving(draw: &mut Draw, degrees: f64) -> ([f64; 3], f64) {
-    let d = -draw.about_z(degrees) * draw.between(0.1, 10.0);
+    let d = -about_z(draw, degrees) * draw.between(0.1, 10.0);
     (d.to_array(), draw.between(1.1, 3.0))
 }
 

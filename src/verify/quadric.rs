@@ -29,6 +29,8 @@ pub enum Family {
     Ellipsoid,
     /// Without caps, as high as wide.
     Cylinder,
+    /// A hundred times as high as thick, without caps.
+    Pole,
     /// Half a right angle between axis and side.
     Cone,
     /// 0.6° between axis and side.
@@ -38,8 +40,8 @@ pub enum Family {
 }
 
 /// All of them.
-pub const FAMILIES: [Family; 6] =
-    [Family::Sphere, Family::Ellipsoid, Family::Cylinder, Family::Cone, Family::Needle, Family::Frustum];
+pub const FAMILIES: [Family; 7] =
+    [Family::Sphere, Family::Ellipsoid, Family::Cylinder, Family::Pole, Family::Cone, Family::Needle, Family::Frustum];
 
 /// Slopes of 45° and 0.6°.
 const STEEP: f64 = 1.0;
@@ -51,6 +53,7 @@ impl Family {
             Family::Sphere => "sphere",
             Family::Ellipsoid => "ellipsoid",
             Family::Cylinder => "cylinder",
+            Family::Pole => "pole",
             Family::Cone => "cone",
             Family::Needle => "needle cone",
             Family::Frustum => "frustum",
@@ -89,6 +92,7 @@ pub fn draw(family: Family, distance: f64, case: u64) -> Aimed {
         Family::Sphere => (Kind::Sphere(r), [r; 3], 0.0),
         Family::Ellipsoid => (Kind::Sphere(1.0), [0.0; 3].map(|_| r * x.magnitude(-9, 0) * 0.5), 0.0),
         Family::Cylinder => (tube(r, 0.0, 0.0, r), [r, 0.5 * r, r], 0.5 * r),
+        Family::Pole => (tube(0.01 * r, 0.0, 0.0, r), [0.01 * r, 0.5 * r, 0.01 * r], 0.5 * r),
         Family::Cone => (tube(0.0, -STEEP, -r, 0.0), [0.5 * r, 0.5 * r, 0.5 * r], -0.5 * r),
         Family::Needle => (tube(0.0, -SLIM, -r, 0.0), [0.5 * SLIM * r, 0.5 * r, 0.5 * SLIM * r], -0.5 * r),
         Family::Frustum => (tube(r, -0.5, 0.0, r), [0.7 * r, 0.5 * r, 0.7 * r], 0.5 * r),

@@ -165,9 +165,9 @@ fn run(size: Size) -> Outcome {
 fn leave(which: usize, stand: Stand, case: u64, tally: &mut Tally) {
     let mut x = Draw::new("leaving", 64 * case + 4 * which as u64 + stand as u64);
     let (shape, build, place, s) = placed(which, stand, &mut x);
-    let from = place.apply(DVec3::from_array(x.vector()) * (4.0 * s)).to_array();
     let at = inside(&shape, &place, &mut x);
-    let (o, d) = (from, unit(minus(at, from)));
+    let o = axpy(s * x.magnitude(2, 24), x.direction(), at);
+    let d = unit(minus(at, o));
     let Some(&(t, part)) = shape.ray(o, d, None).as_slice().first() else { return };
     let start = shape.surface(o, d, t, part);
     tally.off(start.offset / ulp(size_of(&shape, start.p)));
@@ -175,9 +175,11 @@ fn leave(which: usize, stand: Stand, case: u64, tally: &mut Tally) {
         let dir = leaving(&mut x, start.n, side);
         let from = spawn_point(start.p, start.n, side * start.offset);
         let own = Own { here: Bool(true), part, outward: Bool(side > 0.0) };
-        let (again, twin) = (shape.ray(from, dir, Some(own)), shape.ray(from, dir, None));
+        // Of the shape itself, the crossing at the start is taken out, so that needs no distance at all.
+        let (at_once, again) = (shape.ray(start.p, dir, Some(own)), shape.ray(from, dir, Some(own)));
+        let twin = shape.ray(from, dir, None);
         tally.tried += 1;
-        for (kind, found) in [(OWN, again), (TWIN, twin)] {
+        for (kind, found) in [(OWN, at_once), (OWN, again), (TWIN, twin)] {
             if !is_right(build, side, found.as_slice().len()) {
                 let say = || format!("{which} {stand:?} {case}, side {side}: {found:?}, offset {}", start.offset);
                 tally.fail(kind, case, say);

@@ -9,7 +9,7 @@ use super::tally::Tally;
 use super::{Bound, Check, Figure, Outcome, Size};
 use crate::math::real::{axpy, dot, minus};
 use crate::math::{Affine, Dd, Real};
-use crate::render::shape::{Kind, Tube};
+use crate::render::shape::{Kind, Ring, Tube};
 use glam::DVec3;
 
 /// The check.
@@ -24,10 +24,12 @@ pub enum Touched {
     Cylinder,
     /// By its slope.
     Cone,
+    /// By the radius of its tube.
+    Torus,
 }
 
 /// All of them.
-pub const TOUCHED: [Touched; 3] = [Touched::Sphere, Touched::Cylinder, Touched::Cone];
+pub const TOUCHED: [Touched; 4] = [Touched::Sphere, Touched::Cylinder, Touched::Cone, Touched::Torus];
 
 /// A line and a shape that it all but touches.
 pub struct Grazing {
@@ -48,9 +50,9 @@ pub struct Grazing {
 /// Draws a line from up to 2·10^6 radii away, and the shape that it all but touches; `None` where the line touches no part
 /// of the shape that is drawn.
 pub fn draw(touched: Touched, case: u64) -> Option<Grazing> {
-    let mut x = Draw::new("tangent", 4 * case + touched as u64);
+    let mut x = Draw::new("tangent", 8 * case + touched as u64);
     let distance = x.magnitude(0, 21);
-    let size = x.magnitude(-300, 300);
+    let size = x.magnitude(-200, 200);
     let centre = x.vector().map(|c| c * size * distance);
     let target = axpy(size, x.direction(), centre);
     let o = axpy(distance * size, x.direction(), target);
@@ -96,6 +98,13 @@ pub fn draw(touched: Touched, case: u64) -> Option<Grazing> {
             }
             (Kind::Tube(Tube { radius: 0.0, slope: -slope, bottom: 2.0 * y, top: 0.0, caps: true }), gap)
         }
+        Touched::Torus => {
+            let (tube, gap) = near(distance_to_circle(from, along, size)?);
+            if !(tube < 0.9 * size && tube > 1e-3 * size) {
+                return None;
+            }
+            (Kind::Ring(Ring::new(size, tube)), gap)
+        }
     };
     let shape = Specimen::framed(kind, &Affine::translation(DVec3::from_array(centre)));
     Some(Grazing { shape, kind, centre, o, d, gap })
@@ -110,12 +119,39 @@ fn distance_to_origin(m: [Dd; 3], d: [Dd; 3]) -> Option<(Dd, Dd)> {
     (l.hi > 0.0 && l.hi.is_finite()).then_some((t, l))
 }
 
+/// The least distance of the line m + t·d to the circle of radius `r` around the y axis, near where it is nearest to the
+/// origin. By Newton's method on the derivative: what is off in t is squared in the distance.
+fn distance_to_circle(m: [Dd; 3], d: [Dd; 3], r: f64) -> Option<Dd> {
+    let mut t = distance_to_origin(m, d)?.0;
+    let r = Dd::new(r);
+    let (dd, flat) = (dot(d, d), d[0] * d[0] + d[2] * d[2]);
+    let mut last = None;
+    for _ in 0..40 {
+        let p: [Dd; 3] = std::array::from_fn(|i| m[i] + t * d[i]);
+        let rho = (p[0] * p[0] + p[2] * p[2]).sqrt();
+        let away = p[0] * d[0] + p[2] * d[2];
+        // Half the squared distance is (|p|² + r²)/2 − r·ρ; its first and second derivative by t.
+        let slope = dot(p, d) - r * away / rho;
+        let bend = dd - r * (flat - away * away / (rho * rho)) / rho;
+        let (step, w) = (slope / bend, rho - r);
+        if !(bend.hi > 0.0) {
+            return None;
+        }
+        t = t - step;
+        last = Some((w * w + p[1] * p[1]).sqrt());
+        if step.hi.abs() <= 1e-25 * r.hi {
+            return last.filter(|l| l.hi > 0.0);
+        }
+    }
+    None
+}
+
 const WRONG: usize = 0;
 const CLOSE: usize = 1;
 
 fn run(size: Size) -> Outcome {
     let rays = size.pick(2_000, 30_000);
-    let mut outcome = Outcome { cases: rays * 3, ..Outcome::default() };
+    let mut outcome = Outcome { cases: rays * TOUCHED.len() as u64, ..Outcome::default() };
     for touched in TOUCHED {
         let tally = Tally::of(rays, |case, tally| {
             let Some(line) = draw(touched, case) else { return };

@@ -111,11 +111,14 @@ fn shoot(aim: Aim, place: Where, case: u64, tally: &mut Tally) {
     let o = turned(put(origin));
     let d = minus(turned(put(at)), o);
     let d = if whole { d } else { unit(d) };
-    let met: u32 = mesh
-        .triangles
-        .iter()
-        .map(|t| Specimen::triangle(t.map(|v| turned(put(v)))).ray(o, d, None).as_slice().len() as u32)
-        .sum();
+    let met = mesh.triangles.iter().filter(|t| {
+        // Each starts with any of its corners, and may go round either way: the rule for ties can't lean on that.
+        let (first, flip) = (x.below(3) as usize, x.once_in(2));
+        let corner = |i: usize| turned(put(t[(first + if flip { 3 - i } else { i }) % 3]));
+        let triangle = Specimen::triangle(std::array::from_fn(corner));
+        !triangle.ray(o, d, None).as_slice().is_empty()
+    });
+    let met = met.count();
     tally.tried += 1;
     tally.wrong[TIE] += whole as u64;
     if met != 1 {
