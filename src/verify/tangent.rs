@@ -125,7 +125,6 @@ fn distance_to_circle(m: [Dd; 3], d: [Dd; 3], r: f64) -> Option<Dd> {
     let mut t = distance_to_origin(m, d)?.0;
     let r = Dd::new(r);
     let (dd, flat) = (dot(d, d), d[0] * d[0] + d[2] * d[2]);
-    let mut last = None;
     for _ in 0..40 {
         let p: [Dd; 3] = std::array::from_fn(|i| m[i] + t * d[i]);
         let rho = (p[0] * p[0] + p[2] * p[2]).sqrt();
@@ -138,9 +137,8 @@ fn distance_to_circle(m: [Dd; 3], d: [Dd; 3], r: f64) -> Option<Dd> {
             return None;
         }
         t = t - step;
-        last = Some((w * w + p[1] * p[1]).sqrt());
         if step.hi.abs() <= 1e-25 * r.hi {
-            return last.filter(|l| l.hi > 0.0);
+            return Some((w * w + p[1] * p[1]).sqrt()).filter(|l| l.hi > 0.0);
         }
     }
     None
