@@ -182,13 +182,13 @@ fn every_lane_gives_the_bits_of_its_ray_alone() {
                 let rays: [_; WIDTH] = std::array::from_fn(|i| ray(WIDTH as u64 * case + i as u64));
                 let lanes = |v: [[f64; 3]; WIDTH]| -> [Four; 3] { std::array::from_fn(|c| each(|i| v[i][c])) };
                 // Of every other batch some lanes start on the shape.
-                let here = mask(|i| case % 2 == 1 && (case / 2 + i as u64) % 3 == 0);
+                let here = mask(|i| case % 2 == 1 && (case / 2 + i as u64).is_multiple_of(3));
                 let outward = mask(|i| (case + i as u64) % 4 < 2);
                 let own = Own { here, part: Four([0.0; WIDTH]), outward };
                 let together = seen::<Four>(&shape, lanes(rays.map(|r| r.0)), lanes(rays.map(|r| r.1)), own);
-                for i in 0..WIDTH {
+                for (i, (o, d)) in rays.into_iter().enumerate() {
                     let own = Own { here: Bool(here.0[i]), part: 0.0, outward: Bool(outward.0[i]) };
-                    let alone = seen::<f64>(&shape, rays[i].0, rays[i].1, own);
+                    let alone = seen::<f64>(&shape, o, d, own);
                     let mine: Vec<_> =
                         together.iter().filter(|x| x.2.0[i]).map(|x| (bits(x.0.0[i]), x.1.0[i])).collect();
                     let wanted: Vec<_> = alone.iter().filter(|x| x.2.0).map(|x| (bits(x.0), x.1)).collect();

@@ -152,7 +152,8 @@ impl Frame {
     }
 }
 
-/// The dot product and what its rounding leaves out (Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 2005: Dot2).
+/// The dot product, rounded as if it were summed exactly, and what that leaves out (Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26,
+/// 2005: Dot2). Of a ray all but along a face the terms cancel, and their rounding errors are the result.
 #[inline(always)]
 fn long_dot<R: Real>(a: [R; 3], b: [R; 3]) -> (R, R) {
     let (s0, e0) = a[0].two_prod(b[0]);
@@ -160,7 +161,7 @@ fn long_dot<R: Real>(a: [R; 3], b: [R; 3]) -> (R, R) {
     let (p2, e2) = a[2].two_prod(b[2]);
     let (s1, g1) = s0.two_sum(p1);
     let (s2, g2) = s1.two_sum(p2);
-    (s2, ((e0 + e1) + (e2 + g1)) + g2)
+    s2.two_sum(((e0 + e1) + (e2 + g1)) + g2)
 }
 
 fn cyclic_rows(k: u8) -> [[f64; 3]; 3] {
@@ -200,6 +201,28 @@ mod tests {
         assert_eq!(normal(Affine::scaling(DVec3::new(-1.0, 1.0, 1.0))), [-0.1, 0.7, 0.3]);
         assert_eq!(normal(Affine::rotation(2, 90.0)), [-0.7, 0.1, 0.3]);
         assert_ne!(normal(Affine::scaling(DVec3::new(-1.0, 2.0, 1.0))), [-0.1, 0.7, 0.3]);
+    }
+
+    #[test]
+    fn a_direction_along_a_face_keeps_its_last_bits() {
+        use crate::math::Dd;
+        let mut tiny = 0;
+        for i in 1..1000 {
+            let k = i as f64;
+            let turn = Affine::rotation_about(DVec3::new(k, 1.0, -0.3 * k), 0.37 * k);
+            let mut maps = Vec::new();
+            let frame = Frame::new(&turn, |m| {
+                maps.push(m);
+                0
+            });
+            let across = DVec3::from_array(maps[0].local_from_world[1]).cross(DVec3::new(1.0, k, 0.2)).normalize();
+            let d = across.to_array();
+            let fast = frame.localize::<f64, false>(&maps, [0.0; 3], d).d[1];
+            let exact = frame.localize::<Dd, false>(&maps, [Dd::default(); 3], d.map(Dd::new)).d[1].hi;
+            assert!((fast - exact).abs() <= 1e-12 * exact.abs(), "{i}: {fast} for {exact}");
+            tiny += (exact.abs() < 1e-15 && exact != 0.0) as u32;
+        }
+        assert!(tiny > 500, "{tiny}");
     }
 
     #[test]

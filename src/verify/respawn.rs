@@ -201,7 +201,7 @@ fn is_right(build: Build, side: f64, n: usize) -> bool {
         (Build::Solid, false) => n == 1,
         (Build::Open, false) => n <= 1,
         (Build::Hollow, true) => n.is_multiple_of(2),
-        (Build::Hollow, false) => n % 2 == 1,
+        (Build::Hollow, false) => !n.is_multiple_of(2),
     }
 }
 

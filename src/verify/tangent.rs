@@ -136,10 +136,10 @@ fn distance_to_circle(m: [Dd; 3], d: [Dd; 3], r: f64) -> Option<Dd> {
         if !(bend.hi > 0.0) {
             return None;
         }
-        t = t - step;
         if step.hi.abs() <= 1e-25 * r.hi {
             return Some((w * w + p[1] * p[1]).sqrt()).filter(|l| l.hi > 0.0);
         }
+        t = t - step;
     }
     None
 }

@@ -54,7 +54,14 @@ fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
     let k = S::splat(reciprocal_power(longest));
     let ray = LocalRay { o: at(0), o_lo: at(3), d: each3(d, |x| x * k), d_lo: each3(at(9), |x| x * k) };
     if !v[12].same(S::zero()).any() {
-        return numbers(roots_from(ring, &ray, v[12]), k);
+        let mut found = numbers(roots_from(ring, &ray, v[12]), k);
+        if v[12].lt(S::zero()).any() {
+            // A way out that rounding puts at the very start is a way out all the same.
+            for t in &mut found[..4] {
+                *t = S::select(t.same(S::zero()), S::splat(S::LEAST), *t);
+            }
+        }
+        return found;
     }
     let (found, doubt) = ring_roots(ring, &ray);
     let LocalRay { o, o_lo: l, d, d_lo: e } = ray;
