@@ -126,6 +126,9 @@ fn usage_errors() {
         "explain ball.scene 16,0",
         "explain ball.scene 1",
         "help no-such-word",
+        "verify --only no-such-check",
+        "verify --only energy ball.scene",
+        "verify --json --markdown",
     ] {
         let (stdout, stderr) = desk.expect(2, arguments);
         assert!(stdout.is_empty() && !stderr.is_empty(), "rtdsl {arguments}");
@@ -325,4 +328,47 @@ fn help_knows_words_and_commands() {
     let (_, stderr) = desk.expect(2, "help spere");
     assert!(stderr.contains("did you mean `sphere`?"), "{stderr}");
     desk.expect(0, "--version");
+}
+
+#[test]
+fn verify_as_text_json_and_markdown() {
+    let desk = Desk::new();
+    let (stdout, stderr) = desk.expect(0, "verify --only treeless --only energy ball.scene");
+    assert_eq!(stderr, "", "not on a terminal: no bar");
+    assert!(stdout.starts_with("rtdsl ") && stdout.contains("; quick programme\n"), "{stdout}");
+    assert!(
+        stdout.contains("\nenergy: ") && stdout.contains("\ntreeless: "),
+        "in the order of the programme: {stdout}"
+    );
+    assert!(stdout.contains("All figures of 2 checks are within their bounds"), "{stdout}");
+    assert!(!stdout.contains('\u{1b}'), "no colours for a pipe");
+
+    let (stdout, _) = desk.expect(0, "verify --only treeless --only energy --json ball.scene");
+    let report: Value = serde_json::from_str(&stdout).unwrap();
+    // The fields are those that docs/verify.md tells of, and all of those.
+    let docs = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/verify.md")).unwrap();
+    let tables: Vec<&str> = docs.split("| field | what it is |").skip(1).collect();
+    assert_eq!(tables.len(), 3);
+    let check = &report["checks"][0];
+    for (object, table) in [&report, check, &check["figures"][0]].into_iter().zip(tables) {
+        let rows = table.lines().filter_map(|l| l.strip_prefix("| `")?.split_once(" |")).map(|(names, _)| names);
+        let mut told: Vec<&str> = rows.flat_map(|names| names.split("`, `")).map(|n| n.trim_matches('`')).collect();
+        told.sort_unstable();
+        let fields: Vec<&String> = object.as_object().unwrap().keys().collect();
+        assert_eq!(fields, told);
+    }
+    assert_eq!((&report["schema"], &report["size"], &report["kept"]), (&1.into(), &"quick".into(), &true.into()));
+    assert_eq!(report["scenes"], serde_json::json!(["ball.scene"]));
+    assert_eq!((&check["name"], &report["checks"][1]["name"]), (&"energy".into(), &"treeless".into()));
+    let bins = check["figures"][0]["histogram"].as_array().unwrap();
+    assert_eq!(bins.iter().map(|b| b[1].as_u64().unwrap()).sum::<u64>(), 4_000, "every case of the first form");
+    assert_eq!(bins.last().unwrap()[0], Value::Null);
+
+    let (stdout, _) = desk.expect(0, "verify --only treeless --markdown ball.scene");
+    assert!(stdout.contains("\n| check | figure | value | bound | kept | spread |\n|---|"), "{stdout}");
+
+    let (_, stderr) = desk.expect(2, "verify --only treless");
+    assert!(stderr.contains("did you mean `treeless`?") && stderr.contains("the checks are: quadrics"), "{stderr}");
+    desk.expect(1, "verify --only treeless wrong.scene");
+    desk.expect(3, "verify --only treeless missing.scene");
 }

@@ -2,7 +2,7 @@
 
 use rayon::ThreadPoolBuilder;
 use rtdsl::app::verify::built_in::built_in;
-use rtdsl::verify::{Outcome, Size, Subject, pictures, programme};
+use rtdsl::verify::{Figure, Outcome, Size, Subject, hashed, pictures, programme};
 use std::sync::LazyLock;
 
 /// The built-in scenes.
@@ -27,7 +27,7 @@ fn outcome(name: &str, threads: usize) -> Outcome {
 fn assert_kept(name: &str) {
     let outcome = outcome(name, 2);
     assert!(outcome.cases > 0 && !outcome.figures.is_empty(), "it tries something");
-    let say = |f: &rtdsl::verify::Figure| format!("{}: {} {}, {:?}", f.what, f.value, f.unit, f.bound);
+    let say = |f: &Figure| format!("{}: {} {}, {:?}", f.what, f.value, f.unit, f.bound);
     let broken: Vec<String> = outcome.figures.iter().filter(|f| !f.is_within()).map(say).collect();
     let first = outcome.first_failure.unwrap_or_default();
     assert!(broken.is_empty(), "{}\nfirst: {first}", broken.join("\n"));
@@ -48,6 +48,14 @@ macro_rules! checks {
 }
 
 checks! {
+    quadrics,
+    tangents,
+    tori,
+    watertight,
+    leaving,
+    contact,
+    tree,
+    intervals,
     energy,
     powers,
     scales,
@@ -64,6 +72,14 @@ checks! {
 fn every_check_of_the_programme_is_a_test_here() {
     let names = programme().into_iter().map(|c| c.name).chain(pictures().into_iter().map(|c| c.name));
     assert_eq!(names.collect::<Vec<_>>(), LISTED);
+}
+
+/// A change that moves a bit of a picture shows here: the new hashes go into `src/app/verify/built_in.rs`.
+#[test]
+fn pictures_have_the_hashes_that_the_program_states() {
+    let stated: Vec<(&str, &str)> = SUBJECTS.iter().map(|s| (s.name.as_str(), s.hash.unwrap_or_default())).collect();
+    let made: Vec<(&str, String)> = SUBJECTS.iter().map(|s| (s.name.as_str(), hashed(&s.scene).hash())).collect();
+    assert_eq!(made.iter().map(|(name, hash)| (*name, hash.as_str())).collect::<Vec<_>>(), stated);
 }
 
 /// The same cases and the same figures on any number of threads. What checks of pictures have of this is a law of its own.

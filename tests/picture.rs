@@ -3,7 +3,6 @@
 mod support;
 
 use glam::DVec3;
-use rtdsl::film::Film;
 use rtdsl::lang::{Input, Request, evaluate};
 use rtdsl::math::Affine;
 use rtdsl::math::hash::KeyedHash;
@@ -138,8 +137,7 @@ fn some_examples_obey() {
 
 #[test]
 fn the_tree_finds_what_testing_everything_finds() {
-    for (name, rays) in [("chess", 3_000), ("flake", 3_000), ("extremes", 10_000), ("figure", 3_000), ("window", 3_000)]
-    {
+    for (name, rays) in [("chess", 3_000), ("flake", 500), ("extremes", 10_000), ("figure", 3_000), ("window", 3_000)] {
         let scene = example(name);
         let search = Search::through(&World::build(&scene, &scene.cameras[0]), rays, 1);
         assert!(search.hits * 3 > search.rays && search.differing == 0, "{name}: {search:?}");
@@ -149,51 +147,39 @@ fn the_tree_finds_what_testing_everything_finds() {
     assert!(search.hits * 3 > search.rays && search.differing == 0, "{search:?}");
 }
 
+/// A prism that was turned on its table: both have a face in one plane, and rays that leave the glass there see the table.
 #[test]
-#[ignore]
-fn survey() {
-    let only = std::env::var("ONLY").ok();
-    for name in names() {
-        if only.as_ref().is_some_and(|o| !o.split(',').any(|o| o == name)) {
-            continue;
+fn other_scales_keep_the_picture() {
+    for (name, scales) in [("glass", &[1e-6, 1e3][..]), ("extremes", &[1e-3][..])] {
+        let scene = beside(&example(name));
+        let o = options(&scene, 160, 90);
+        let before = picture(&scene, &o);
+        for &s in scales {
+            let difference = Law::Scaled(s).difference(&scene, &o, &before).expect("any scale will do");
+            assert!(difference.visible_share() <= 1e-4, "{name} times {s}: {difference:?}");
         }
-        let scene = steady(&example(&name));
-        let o = options(&scene, 96, 54);
-        let before = picture(&scene, &o);
-        let mut laws = exact_laws();
-        laws.extend([0, 1, 2].map(Law::Turned));
-        report(&name, "f64", &scene, &o, &before, &laws);
-        let o = Options { precision: Precision::F32, ..o };
-        let before = picture(&scene, &o);
-        let laws = exact_laws_of_f32();
-        report(&name, "f32", &scene, &o, &before, &laws);
-        let scene = beside(&scene);
-        let o = options(&scene, 320, 180);
-        let before = picture(&scene, &o);
-        let n = World::build(&scene, &scene.cameras[0]).primitive_count() as u64;
-        let rays = 60_000_000 / n.max(1);
-        let search = Search::through(&World::build(&scene, &scene.cameras[0]), rays.min(1_000_000), 3);
-        println!("{name}: {n} primitives, {search:?}");
-        report(&name, "f64", &scene, &o, &before, &[1e-6, 1e-3, 1e3, 1e6, 1e9].map(Law::Scaled));
     }
 }
 
-fn report(name: &str, what: &str, scene: &Scene, o: &Options, before: &Film, laws: &[Law]) {
-    for law in laws {
-        match law.difference(scene, o, before) {
-            None => println!("{name} {what} {law:?}: CAN'T"),
-            Some(d) if d.bits > 0 => {
-                println!(
-                    "{name} {what} {law:?}: bits {} visible {} ({:.4} %) codes {:.3} first {:?}",
-                    d.bits,
-                    d.visible,
-                    100.0 * d.visible_share(),
-                    d.codes,
-                    d.first
-                )
-            }
-            Some(_) => {}
+#[test]
+#[ignore = "every law on every example takes minutes"]
+fn every_example_obeys() {
+    for name in names() {
+        let scene = steady(&example(&name));
+        let o = options(&scene, 96, 54);
+        hold(&name, &scene, &o, &exact_laws());
+        hold(&name, &scene, &Options { precision: Precision::F32, ..o.clone() }, &exact_laws_of_f32());
+        let world = World::build(&scene, &scene.cameras[0]);
+        let rays = 100_000_000 / world.primitive_count().max(100) as u64;
+        let search = Search::through(&world, rays, 3);
+        assert_eq!(search.differing, 0, "{name}: {search:?}");
+        let scene = beside(&scene);
+        let o = options(&scene, 320, 180);
+        let before = picture(&scene, &o);
+        for law in [1e-6, 1e-3, 1e3, 1e6, 1e9].map(Law::Scaled).into_iter().chain([0, 1, 2].map(Law::Turned)) {
+            let difference = law.difference(&scene, &o, &before).expect("any camera can be scaled and turned");
+            assert!(difference.visible_share() <= 1e-4, "{name}, {law:?}: {difference:?}");
         }
+        println!("{name} obeys");
     }
-    println!("{name} {what} done {}", laws.len());
 }

@@ -22,7 +22,7 @@ pub fn misplaced(shape: &Shape, world_from_object: &Affine) -> Option<(String, &
         return Some(("is scaled beyond all measure".into(), LENGTHS));
     }
     if is_flattened(m) {
-        let what = "its transforms scale it unevenly, turn it, and scale it back: no digit is left of one direction";
+        let what = "between its turns it is scaled so unevenly that rounding leaves nothing of one direction";
         return Some(("is flattened beyond all measure".into(), what));
     }
     let (points, small, large) = extent(shape);

@@ -170,10 +170,10 @@ impl Default for Affine {
 }
 
 /// The power of two whose product with a normal x > 0 lies in 1..2 (a half at the very top of the range), from x's exponent
-/// field.
+/// field. Of what isn't finite, the smallest normal number.
 pub fn reciprocal_power(x: f64) -> f64 {
     let field = (x.to_bits() >> 52) & 0x7ff;
-    f64::from_bits((2046 - field).max(1) << 52)
+    f64::from_bits(2046_u64.saturating_sub(field).max(1) << 52)
 }
 
 #[cfg(test)]

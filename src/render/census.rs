@@ -35,7 +35,7 @@ impl PrimitiveKey {
         }
         let space = pattern_space(placed, made);
         if let Slot::Pattern(_) = surfacing.transmit {
-            transmit = content_key([transmit, space.content, space.power as u64, space.signed].into_iter());
+            transmit = content_key([transmit, space.content, space.power, space.signed].into_iter());
         }
         PrimitiveKey { geometry, look, space, transmit }
     }

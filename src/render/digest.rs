@@ -52,17 +52,12 @@ pub struct LengthKey {
 }
 
 impl LengthKey {
-    /// The key of `plain` numbers and `lengths`, all finite.
+    /// The key of `plain` numbers (a NaN stands for none) and `lengths`.
     pub fn new(plain: impl Iterator<Item = f64> + Clone, lengths: impl Iterator<Item = f64> + Clone) -> LengthKey {
-        let mut power = power_to_unit(lengths.clone());
-        if std::env::var_os("MUT_KEY").is_some() {
-            power = 1.0;
-        }
+        let power = power_to_unit(lengths.clone());
         let all = || plain.clone().chain(lengths.clone().map(|x| x * power));
         // -0 counts as 0.
-        let content = all()
-            .fold(KeyedHash::new(), |h, x| h.with_f64(if std::env::var_os("MUT_SIGN").is_some() { x } else { x.abs() }))
-            .bits();
+        let content = all().fold(KeyedHash::new(), |h, x| h.with_f64(x.abs())).bits();
         let signed = all().fold(KeyedHash::new(), KeyedHash::with_f64).bits();
         LengthKey { content, power: power.to_bits(), signed }
     }
@@ -109,4 +104,31 @@ fn pattern_digest(scene: &Scene, kind: &PatternKind, before: &[u64]) -> u64 {
         K::Multiply(..) => numbers(15, &[]),
     };
     kind.children().into_iter().fold(own, |h, c| h.with(before[c.0 as usize])).bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_tell_everything_apart_and_keep_their_order_at_every_scale() {
+        let lengths = |i: u64, s: f64| [1, 2, 3].map(|k| s * (KeyedHash::new().with(i).with(k).unit() - 0.5));
+        let key = |i: u64, s: f64| LengthKey::new([1.0].into_iter(), lengths(i, s).into_iter());
+        let order = |s: f64| {
+            // Things of one form in several sizes, too.
+            let key = |i: u64| key(i % 50, s * [1.0, 2.0, -2.0][i as usize / 50]);
+            let mut ids: Vec<u64> = (0..150).collect();
+            ids.sort_by_key(|&i| key(i));
+            assert!(ids.windows(2).all(|w| key(w[0]) != key(w[1])));
+            ids
+        };
+        for k in [-400, -1, 1, 400] {
+            assert_eq!(order(1.0), order(f64::from_bits(((1023 + k) as u64) << 52)), "2^{k}");
+        }
+        let plain = |x: f64| LengthKey::new([x].into_iter(), [3.0].into_iter());
+        assert_ne!(plain(1.0), plain(2.0), "what has no length has a size");
+        assert_eq!(plain(0.0), plain(-0.0));
+        let mirrored = LengthKey::new([1.0].into_iter(), lengths(7, 1.0).into_iter().map(|x| -x));
+        assert!(mirrored != key(7, 1.0) && mirrored.content == key(7, 1.0).content);
+    }
 }

@@ -44,7 +44,6 @@ impl LinearMap {
     pub fn new(world_from_local: [[f64; 3]; 3], local_from_world: [[f64; 3]; 3]) -> LinearMap {
         let exchange = world_from_local.as_flattened().iter().all(|x| *x == 0.0 || x.abs() == 1.0)
             && world_from_local.iter().all(|row| row.iter().filter(|x| **x != 0.0).count() == 1);
-        let exchange = exchange && std::env::var_os("MUT_FLAG").is_none();
         LinearMap { local_from_world, world_from_local, exchange }
     }
 }
@@ -186,6 +185,22 @@ mod tests {
             assert_eq!(frame.point_to_world(&[], ray.o), [11.0, 22.0, 33.0]);
             assert_eq!(frame.vector_to_world(&[], ray.d), [1.0, 2.0, 3.0]);
         }
+    }
+
+    #[test]
+    fn mirrors_and_quarter_turns_keep_normals_to_the_bit() {
+        let n = [0.1, 0.7, 0.3]; // of no unit length: a normalised one would differ
+        let normal = |a: Affine| {
+            let mut maps = Vec::new();
+            let frame = Frame::new(&a, |m| {
+                maps.push(m);
+                0
+            });
+            frame.normal_to_world::<f64>(&maps, n)
+        };
+        assert_eq!(normal(Affine::scaling(DVec3::new(-1.0, 1.0, 1.0))), [-0.1, 0.7, 0.3]);
+        assert_eq!(normal(Affine::rotation(2, 90.0)), [-0.7, 0.1, 0.3]);
+        assert_ne!(normal(Affine::scaling(DVec3::new(-1.0, 2.0, 1.0))), [-0.1, 0.7, 0.3]);
     }
 
     #[test]

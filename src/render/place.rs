@@ -234,11 +234,24 @@ fn similarity(map: &Affine) -> Option<f64> {
     let close = |x: f64, y: f64| (x - y).abs() <= RESIDUE * s2;
     let even = close(column(1, 1), s2) && close(column(2, 2), s2);
     let square = [(0, 1), (0, 2), (1, 2)].into_iter().all(|(a, b)| close(column(a, b), 0.0));
-    let s = s2.sqrt();
+    if !(even && square) {
+        return None;
+    }
     // A rotation's rounding error isn't a scale, whatever power of two is its size.
+    let s = s2.sqrt();
     let power = 1.0 / reciprocal_power(s);
     let near_power = [power, 2.0 * power].into_iter().find(|p| close(s2, p * p));
-    (even && square).then_some(near_power.unwrap_or(s))
+    // Nor is that of a turn about a coordinate axis, along which the scale stands alone: a table and what was turned on it
+    // keep one and the same level.
+    let alone = || (0..3).map(|c| (0..3).map(move |r| m[r][c].abs())).find_map(only_one);
+    Some(near_power.or_else(alone).unwrap_or(s))
+}
+
+/// The only one of three magnitudes that isn't 0.
+fn only_one(x: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut others = x.filter(|x| *x != 0.0);
+    let one = others.next()?;
+    others.next().is_none().then_some(one)
 }
 
 /// A right-handed frame at `origin` whose y axis points along `axis`; the world's own axes where one of them does.
@@ -311,6 +324,29 @@ mod tests {
         assert_eq!(placed.rescale.unwrap().faces[1], [(0.0, 0.0), (3.0, 1.0)]);
         assert_eq!(placed.made_from_local.apply(DVec3::Y), DVec3::Y);
         assert_eq!(placed.world_from_local.apply(DVec3::new(0.0, 3.0, 0.0)), DVec3::new(-3.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn what_was_turned_on_a_table_stands_on_it_at_any_scale() {
+        for s in [1.0, 1e-6, 1e-3, 3.7, 1e3, 1e9] {
+            let world = Affine::scaling(DVec3::splat(s)).compose(&Affine::translation(DVec3::new(0.1, 0.3, 0.2)));
+            let turned = world.compose(&Affine::rotation(1, 28.0));
+            let glass = Shape::Box { from: DVec3::new(-0.42, 0.0, -0.42), to: DVec3::new(0.42, 0.7, 0.42) };
+            let cone = Shape::Cone { from: DVec3::ZERO, to: DVec3::Y * 0.7, r: 0.3, top: 0.0, caps: true };
+            let level =
+                place(&Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, &world)[0].world_from_local.shift[1];
+            for shape in [glass, cone] {
+                let placed = &place(&shape, &turned)[0];
+                assert_eq!(placed.world_from_local.linear_f64()[1], [0.0, 1.0, 0.0], "{s}");
+                let lowest = match &placed.form {
+                    Form::Framed(Kind::Cuboid(half)) => -half[1],
+                    Form::Framed(Kind::Tube(t)) => t.bottom,
+                    _ => f64::NAN,
+                };
+                let off = placed.world_from_local.shift[1] + Dd::new(lowest) - level;
+                assert!(off.hi.abs() <= 1e-30 * s, "{s}: {off:?}");
+            }
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Whether the tree finds what testing every surface finds: the same t, to the bit, and the same surface.
 
 use super::batch::{HitColumns, NONE, RayBatch};
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 use super::candidates::Candidates;
 use super::tracer::nearest;
 use super::world::World;
@@ -56,6 +56,9 @@ impl Search {
     }
 }
 
+/// Rays run along an axis plane, or at a larger angle than this to it: 2^-40, thousands of roundings.
+const LEAST_ANGLE: f64 = 1.0 / (1u64 << 40) as f64;
+
 /// Rays at a time.
 const ROOM: usize = 256;
 
@@ -81,6 +84,10 @@ fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     if unit(4) < 0.1 {
         d[(unit(5) * 3.0) as usize] = 0.0;
     }
+    // From a face to the same face it runs along it exactly. At an angle of a few roundings which of two faces comes first is for
+    // rounding to say, and a kernel may say otherwise than the box around it does.
+    let longest = d.iter().map(|x| x.abs()).fold(0.0, larger);
+    let d = d.map(|x| if x.abs() < LEAST_ANGLE * longest { 0.0 } else { x });
     (o, if d == [0.0; 3] { [0.0, 0.0, -1.0] } else { d })
 }
 

@@ -17,6 +17,7 @@ use super::world::{PointLight, World};
 use crate::math::fun;
 use crate::math::real::{Mask, dot, each3, minus, scaled, splat3, three};
 use crate::math::{Elem, Lane};
+use crate::scene::range::BRIGHTEST;
 
 /// The hits of one object.
 pub struct Hits<'a, E> {
@@ -288,7 +289,9 @@ fn finish<L: Lane>(
             let live = lanes_below::<L>(rays.len - g);
             let part = L::load(&hits.part[g..]);
             let from = |o: [L; 3], d: [L; 3], w: [L; 3], outward: L| {
-                let w = three(|c| weight[c] * w[c]);
+                // Mirrors that amplify, face to face, would leave the range of numbers.
+                let most = L::splat(BRIGHTEST);
+                let w = three(|c| (weight[c] * w[c]).min(most).max(-most));
                 Child { o, d, w, part, outward }
             };
             if mirrors {

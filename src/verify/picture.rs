@@ -9,6 +9,7 @@
 use crate::film::Film;
 use crate::math::Affine;
 use crate::math::hash::KeyedHash;
+use crate::render::bounds::larger;
 use crate::render::{Crop, Options, Silent, World, render};
 use crate::scene::color::encode_srgb;
 use crate::scene::{Camera, Node, NodeId, NodeKind, Projection, Scene};
@@ -124,9 +125,9 @@ pub fn compare(a: &Film, b: &Film) -> Difference {
         let i = i as u32;
         difference.first = difference.first.or(Some((i % a.width, i / a.width)));
         difference.bits += 1;
-        let worst = p.iter().zip(q).fold(0.0, |m: f64, (x, y)| m.max((code(*x) - code(*y)).abs()));
+        let worst = p.iter().zip(q).fold(0.0, |m: f64, (x, y)| larger((code(*x) - code(*y)).abs(), m));
         difference.visible += (worst > 2.0) as usize;
-        difference.codes = difference.codes.max(worst);
+        difference.codes = larger(worst, difference.codes);
     }
     difference
 }

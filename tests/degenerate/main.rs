@@ -179,6 +179,19 @@ fn cameras_and_lights_may_be_anywhere() {
 }
 
 #[test]
+fn mirrors_that_amplify_stay_numbers() {
+    let facing = "mat: phong(color: black, reflect: 1e6)";
+    let text = format!(
+        "render(size: [8, 6], depth: 100)\ncamera(from: [0, 0, 5], at: [0, 0.0001, 0])\nbackground(white)\n\
+         disc(at: [0, 0, -1], r: 3, normal: [0, 0, 1], {facing})\ndisc(at: [0, 0, 10], r: 3, normal: [0, 0, 1], {facing})\n"
+    );
+    for precision in ["f64", "f32"] {
+        let film = drawn(&text.replace("depth: 100", &format!("depth: 100, precision: \"{precision}\"")));
+        assert!(film.pixels.as_flattened().iter().any(|x| *x > 1e5), "the background, amplified");
+    }
+}
+
+#[test]
 fn angles_beyond_all_numbers_are_errors() {
     for unit in ["turn", "rad"] {
         let digits = "9".repeat(308);

@@ -8,9 +8,21 @@ use std::io;
 
 /// A scene's name, its text, and the hash of its small picture, which is the same on every machine.
 const SCENES: [(&str, &str, &str); 3] = [
-    ("cosc363.scene", include_str!("../../../examples/cosc363.scene"), ""),
-    ("extremes.scene", include_str!("../../../examples/extremes.scene"), ""),
-    ("patterns.scene", include_str!("../../../examples/patterns.scene"), ""),
+    (
+        "cosc363.scene",
+        include_str!("../../../examples/cosc363.scene"),
+        "70d59bbefe4d8fb1352b505f2b686b09d2694a5079c6b46a34b458953c1a03f8",
+    ),
+    (
+        "extremes.scene",
+        include_str!("../../../examples/extremes.scene"),
+        "d92663a7a28bdaf19ee171b2706eddd624660e3bd625646438144add3936d49f",
+    ),
+    (
+        "patterns.scene",
+        include_str!("../../../examples/patterns.scene"),
+        "053a1f51a0a8f1fabf2dfb3bdf2f28bbb72a61b5e24bc17530191caef13fa33d",
+    ),
 ];
 
 /// A file that they show.

@@ -108,7 +108,7 @@ fn spread(f: &Measured) -> Option<String> {
     let most = bins.iter().map(|b| b.1).max()?;
     let bar = |n: u64| match n {
         0 => ' ',
-        _ => ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'][(n * 7).div_ceil(most) as usize % 8],
+        _ => ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'][(n * 7 / most) as usize % 8],
     };
     let bars: String = bins[first..=last].iter().map(|b| bar(b.1)).collect();
     let edge = |i: usize| match bins[i].0 {

@@ -69,7 +69,7 @@ pub struct Roots<R: Real> {
 /// In units of roundoff, relative to what it was computed from: a discriminant below this is evaluated again in
 /// double-double. Its own error is below 16 of them. Up to 2^12 its relative error, which half of goes into the roots' distance,
 /// is worth removing, too: no more than one ray in 2^40 comes so near to a tangent.
-const DOUBT: f64 = 4096.0;
+const DOUBT: f64 = (1 << 12) as f64;
 
 /// Solves for the crossings of `ray`'s line with `form` = 0 from its point `m` at `t0`, which is near the shape. Of rays that
 /// start on the quadric itself, the lanes of `own`, one root is exactly 0.

@@ -107,7 +107,7 @@ type Found<S> = [(S, S); 4];
 
 /// In units of roundoff of the fourth power of the ring's reach: the error of the form between the ends of the span, where
 /// its terms add up to less than 64 such powers, each of less than 16 roundings.
-const DOUBT: f64 = 1024.0;
+const DOUBT: f64 = (1 << 10) as f64;
 
 /// Where a line meets the ring, in order; and whether it comes so near to touching that rounding may decide.
 #[inline(always)]
