@@ -5,6 +5,7 @@ use crate::app::load::{load, request};
 use crate::verify::Subject;
 use std::fs;
 use std::io;
+use tempfile::TempDir;
 
 /// A scene's name, its text, and the hash of its small picture, which is the same on every machine.
 const SCENES: [(&str, &str, &str); 3] = [
@@ -28,16 +29,25 @@ const SCENES: [(&str, &str, &str); 3] = [
 /// A file that they show.
 const PICTURE: (&str, &[u8]) = ("assets/earth.png", include_bytes!("../../../examples/assets/earth.png"));
 
+/// A folder with the picture that they show, which is gone when the value is dropped.
+///
+/// # Errors
+/// There is no place for temporary files.
+pub fn folder() -> io::Result<TempDir> {
+    let folder = tempfile::tempdir()?;
+    fs::create_dir(folder.path().join("assets"))?;
+    fs::write(folder.path().join(PICTURE.0), PICTURE.1)?;
+    Ok(folder)
+}
+
 /// The scenes, by way of a folder of their own, which is gone when this returns.
 ///
 /// # Errors
 /// There is no place for temporary files.
 pub fn built_in() -> Result<Vec<Subject>, Stop> {
     let no_place = |e: io::Error| Stop::system("there is no place for the built-in scenes", e);
-    let folder = tempfile::tempdir().map_err(no_place)?;
+    let folder = folder().map_err(no_place)?;
     let path = |name: &str| folder.path().join(name);
-    fs::create_dir(path("assets")).map_err(no_place)?;
-    fs::write(path(PICTURE.0), PICTURE.1).map_err(no_place)?;
     SCENES
         .iter()
         .map(|&(name, text, hash)| {

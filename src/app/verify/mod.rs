@@ -2,7 +2,9 @@
 
 pub mod built_in;
 pub mod report;
+pub mod strange;
 pub mod table;
+mod writer;
 
 use super::args::VerifyArgs;
 use super::load::{load, request, shown_name};
@@ -25,7 +27,7 @@ enum Task {
 
 impl Task {
     fn all() -> Vec<Task> {
-        let formulas = programme().into_iter().map(Task::Formula);
+        let formulas = programme().into_iter().chain([strange::CHECK]).map(Task::Formula);
         formulas.chain(pictures().into_iter().map(Task::Picture)).collect()
     }
     fn words(&self) -> (&'static str, &'static str) {

@@ -1,7 +1,7 @@
 //! Writes scenes that nobody would: numbers from the edges of what there is, shapes that touch, coincide and nest.
 
-use rtdsl::math::fun::pow;
-use rtdsl::math::hash::KeyedHash;
+use crate::math::fun::pow;
+use crate::math::hash::KeyedHash;
 
 /// Draws numbers, the same for the same case.
 pub struct Dice {
