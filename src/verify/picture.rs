@@ -52,6 +52,8 @@ pub struct Difference {
     pub pixels: usize,
     /// Pixels that differ in any bit.
     pub bits: usize,
+    /// Pixels of which a channel differs by more than 1/255 after the transfer curve.
+    pub beyond_one: usize,
     /// Pixels of which a channel differs by more than 2/255 after the transfer curve.
     pub visible: usize,
     /// The largest difference of a channel after the transfer curve, in 255ths.
@@ -114,10 +116,17 @@ fn traced(world: &World, options: &Options) -> Film {
 pub fn compare(a: &Film, b: &Film) -> Difference {
     let pixels = a.pixels.len();
     if (a.width, a.height) != (b.width, b.height) {
-        return Difference { pixels, bits: pixels, visible: pixels, codes: 255.0, first: Some((0, 0)) };
+        return Difference {
+            pixels,
+            bits: pixels,
+            beyond_one: pixels,
+            visible: pixels,
+            codes: 255.0,
+            first: Some((0, 0)),
+        };
     }
     let code = |x: f32| encode_srgb((x as f64).clamp(0.0, 1.0)) * 255.0;
-    let mut difference = Difference { pixels, bits: 0, visible: 0, codes: 0.0, first: None };
+    let mut difference = Difference { pixels, bits: 0, beyond_one: 0, visible: 0, codes: 0.0, first: None };
     for (i, (p, q)) in a.pixels.iter().zip(&b.pixels).enumerate() {
         if p.map(f32::to_bits) == q.map(f32::to_bits) {
             continue;
@@ -126,6 +135,7 @@ pub fn compare(a: &Film, b: &Film) -> Difference {
         difference.first = difference.first.or(Some((i % a.width, i / a.width)));
         difference.bits += 1;
         let worst = p.iter().zip(q).fold(0.0, |m: f64, (x, y)| larger((code(*x) - code(*y)).abs(), m));
+        difference.beyond_one += (worst > 1.0) as usize;
         difference.visible += (worst > 2.0) as usize;
         difference.codes = larger(worst, difference.codes);
     }
