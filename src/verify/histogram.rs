@@ -1,5 +1,8 @@
 //! How errors spread, in ulp: counts by size, and quantiles from them.
 
+use super::draw::power;
+use crate::render::bounds::larger;
+
 /// Counts of errors by size: four bins to every power of two, so that every bound the programme states is the edge of a bin.
 /// Adding up is exact, so the work may be shared out in any way.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,15 +115,6 @@ fn upper_edge(bin: usize) -> f64 {
         _ if bin == Histogram::FINE - 1 => f64::INFINITY,
         _ => f64::from_bits(((power(LOWEST).to_bits() >> 50) + bin as u64) << 50),
     }
-}
-
-/// 2^n.
-fn power(n: i32) -> f64 {
-    f64::from_bits(((1023 + n) as u64) << 52)
-}
-
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! Two laws need pictures of one ray a pixel, through its middle ([`AntiAliasing::Off`](crate::scene::AntiAliasing::Off)):
 //! a mirrored picture adds up the other rays of a pixel in another order.
 
+use super::draw::power;
 use crate::film::Film;
 use crate::math::Affine;
 use crate::math::hash::KeyedHash;
@@ -79,7 +80,7 @@ impl Law {
     pub fn difference(self, scene: &Scene, options: &Options, before: &Film) -> Option<Difference> {
         let again = |scene: &Scene| compare(before, &picture(scene, options));
         Some(match self {
-            Law::PowerOfTwo(k) => again(&scaled(scene, power_of_two(k))),
+            Law::PowerOfTwo(k) => again(&scaled(scene, power(k.clamp(-1000, 1000)))),
             Law::Scaled(s) => again(&scaled(scene, s)),
             Law::Moved(by) => again(&moved(scene, by)?),
             Law::Mirrored(axis) => compare(before, &flipped(&picture(&mirrored(scene, axis), options))),
@@ -265,9 +266,4 @@ fn cut_out(film: &Film, crop: Crop) -> Film {
         to.copy_from_slice(&from[crop.x as usize..(crop.x + crop.width) as usize]);
     }
     part
-}
-
-/// 2^k; k is brought within -1000..=1000.
-fn power_of_two(k: i32) -> f64 {
-    f64::from_bits(((1023 + k.clamp(-1000, 1000)) as u64) << 52)
 }
