@@ -170,7 +170,7 @@ fn every_example_obeys() {
         hold(&name, &scene, &o, &exact_laws());
         hold(&name, &scene, &Options { precision: Precision::F32, ..o.clone() }, &exact_laws_of_f32());
         let world = World::build(&scene, &scene.cameras[0]);
-        let rays = 100_000_000 / world.primitive_count().max(100) as u64;
+        let rays = 100_000_000 / world.primitives().len().max(100) as u64;
         let search = Search::through(&world, rays, 3);
         assert_eq!(search.differing, 0, "{name}: {search:?}");
         let scene = beside(&scene);

@@ -292,11 +292,6 @@ impl World {
         Tables { maps: &self.maps, triangles: &self.triangles }
     }
 
-    /// Number of surfaces.
-    pub fn primitive_count(&self) -> usize {
-        self.primitives.len()
-    }
-
     /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
     pub fn without_tree(mut self) -> World {
         // Planes of which nothing can say that a ray doesn't meet them.
