@@ -44,14 +44,14 @@ impl<L: Lane> ShadowRays<'_, L> {
         if self.touched.contains(&k) {
             return self.crossings_but_the_light(world, k, visit);
         }
-        world.primitives[k as usize].crossings::<L, false>(world.tables(), self.o, self.l, self.own(k), visit);
+        world.crossings::<L, false>(k, (self.o, self.l), self.own(k), visit);
     }
 
     #[cold]
     #[inline(never)]
     fn crossings_but_the_light(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
         let mut visit = ButAtTheEnd::new(self.distance, visit);
-        world.primitives[k as usize].crossings::<L, false>(world.tables(), self.o, self.l, self.own(k), &mut visit);
+        world.crossings::<L, false>(k, (self.o, self.l), self.own(k), &mut visit);
     }
 
     #[inline(always)]
@@ -100,7 +100,7 @@ pub fn occlusion<L: Lane>(
         if recorder.is_on() {
             recorder.shaded(k); // met or not: seldom more than a few
         }
-        let primitive = &world.primitives[k as usize];
+        let primitive = world.primitive(k);
         match world.constant_transmission(k) {
             Some(factor) => {
                 let mut dimmed = Dimmed { distance, factor: splat3(factor), seen };
@@ -113,7 +113,7 @@ pub fn occlusion<L: Lane>(
                 let frame = PatternFrame::new(world, primitive, world.surfacing(k), &mut scratch.spaces);
                 for (t, part, m) in met.crossings.into_iter().take(met.n) {
                     if m.any() {
-                        let surface = primitive.surface::<L, false>(world.tables(), o, l, t, part);
+                        let surface = world.surface::<L, false>(k, (o, l), (t, part));
                         let at = frame.point(&scratch.spaces, surface.local, surface.n);
                         let factor = frame.transmission(world, &at);
                         seen = three(|c| L::select(m, seen[c] * factor[c], seen[c]));

@@ -28,8 +28,8 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
         return None;
     }
     let (id, t, part) = (hits.id[0] as u32, hits.t[0], hits.part[0]);
-    let primitive = &world.primitives[id as usize];
-    let surface = primitive.surface::<f64, false>(world.tables(), o, d, t, part);
+    let primitive = world.primitive(id);
+    let surface = world.surface::<f64, false>(id, (o, d), (t, part));
     let towards = if dot(surface.n, d) > 0.0 { -1.0 } else { 1.0 };
     let normal = scaled(towards, surface.n);
 

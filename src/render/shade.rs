@@ -10,7 +10,6 @@ use super::material::{Slot, Surfacing};
 use super::optics::{dielectric, mirrored};
 use super::pattern::{PatternPoint, Rows};
 use super::place::RESIDUE;
-use super::shape::Primitive;
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::{PatternFrame, bumped};
 use super::world::{PointLight, World};
@@ -91,10 +90,10 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
     children: Children<'_, L::Elem>,
     shadow_rays: &mut u64,
 ) {
-    let primitive = &world.primitives[hits.id as usize];
+    let primitive = world.primitive(hits.id);
     let surfacing = world.surfacing(hits.id);
     let frame = PatternFrame::new(world, primitive, surfacing, &mut s.spaces);
-    surfaces::<L, AT_EYE>(world, primitive, &hits, &frame, s);
+    surfaces::<L, AT_EYE>(world, &hits, &frame, s);
     if surfacing.lit {
         for c in s.diffuse.iter_mut().chain(&mut s.specular) {
             c[..hits.rays.len].fill(L::Elem::default());
@@ -114,18 +113,16 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
 #[inline(always)]
 fn surfaces<L: Lane, const AT_EYE: bool>(
     world: &World,
-    primitive: &Primitive,
     hits: &Hits<'_, L::Elem>,
     frame: &PatternFrame<'_>,
     s: &mut ShadeScratch<L::Elem>,
 ) {
-    let tables = world.tables();
     let mut g = 0;
     while g < hits.rays.len {
         let d = load3::<L>(&hits.rays.d, g);
         let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&hits.rays.o, g) };
         let (t, part) = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
-        let surface = primitive.surface::<L, AT_EYE>(tables, o, d, t, part);
+        let surface = world.surface::<L, AT_EYE>(hits.id, (o, d), (t, part));
         let inside = L::zero().lt(dot(surface.n, d));
         let mut ns = surface.ns;
         if frame.has_bump() {

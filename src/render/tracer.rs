@@ -242,7 +242,7 @@ impl<R: Real> Nearest<R> {
         self.current = R::splat(k as f64);
         let here = start.primitive.same(self.current);
         let own = if AT_EYE { None } else { Some(Own { here, part: start.part, outward: start.outward }) };
-        world.primitives[k as usize].crossings::<R, AT_EYE>(world.tables(), o, d, own, self);
+        world.crossings::<R, AT_EYE>(k, (o, d), own, self);
     }
 }
 

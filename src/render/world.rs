@@ -13,11 +13,12 @@ use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
 use super::pattern::PatternTable;
 use super::place::{Form, Placed, Rescale, place, world_bounds};
+use super::ray::Own;
 use super::shape::primitive::Tables;
-use super::shape::{Kind, Primitive, TriangleData};
+use super::shape::{Kind, Primitive, Surface, TriangleData, Visit};
 use super::touch::{lies_on, neighbourhood};
 use crate::math::real::three;
-use crate::math::{Affine, Dd};
+use crate::math::{Affine, Dd, Real};
 use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
@@ -292,6 +293,35 @@ impl World {
         Tables { maps: &self.maps, triangles: &self.triangles }
     }
 
+    /// The primitive that surface `id` belongs to.
+    #[inline(always)]
+    pub(super) fn primitive(&self, id: u32) -> &Primitive {
+        &self.primitives[id as usize]
+    }
+
+    /// Calls `visit` for every crossing of lines with surface `id`; see [`Primitive::crossings`].
+    #[inline(always)]
+    pub(super) fn crossings<R: Real, const AT_EYE: bool>(
+        &self,
+        id: u32,
+        (o, d): ([R; 3], [R; 3]),
+        own: Option<Own<R>>,
+        visit: &mut impl Visit<R>,
+    ) {
+        self.primitive(id).crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+    }
+
+    /// Surface `id` where rays are at `t`, on `part`.
+    #[inline(always)]
+    pub(super) fn surface<R: Real, const AT_EYE: bool>(
+        &self,
+        id: u32,
+        (o, d): ([R; 3], [R; 3]),
+        (t, part): (R, R),
+    ) -> Surface<R> {
+        self.primitive(id).surface::<R, AT_EYE>(self.tables(), o, d, t, part)
+    }
+
     /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
     pub fn without_tree(mut self) -> World {
         // Planes of which nothing can say that a ray doesn't meet them.
@@ -304,7 +334,7 @@ impl World {
     /// The material of primitive `id`.
     #[inline(always)]
     pub(super) fn surfacing(&self, id: u32) -> &Surfacing {
-        &self.materials[self.primitives[id as usize].material as usize]
+        &self.materials[self.primitive(id).material as usize]
     }
 
     /// The first surface, in the order of the text, whose size or place `f32` can't hold: tracing it so would draw something
