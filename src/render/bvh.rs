@@ -110,12 +110,12 @@ impl Bvh {
         if self.nodes.is_empty() {
             return;
         }
-        let inverse = each3(d, |x| R::one() / x);
+        let inverse = each3!(d, x => R::one() / x);
         // How far a turned surface may seem off by what its frame makes of an origin this far out: 16 roundings, as many as
         // boxes are wider by for their own distance.
         let reach = R::splat(16.0 * R::UNIT_ROUNDOFF) * o[0].abs().max(o[1].abs()).max(o[2].abs());
-        let o = [each3(o, |x| x + reach), each3(o, |x| x - reach)];
-        let first_sign = three(|i| !d[i].lt(R::zero()).any());
+        let o = [each3!(o, x => x + reach), each3!(o, x => x - reach)];
+        let first_sign = three!(i => !d[i].lt(R::zero()).any());
         let (mut stack, mut depth) = ([0u32; STACK], 1);
         while depth > 0 {
             depth -= 1;

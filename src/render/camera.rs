@@ -72,11 +72,9 @@ impl PixelGrid<'_> {
         let step = R::splat(self.step);
         let (sx, sy) = ((x - R::splat(self.half_width)) * step, (R::splat(self.half_height) - y) * step);
         let c = self.camera;
-        let across = |base: fn(&CameraFrame, usize) -> f64| {
-            three(|i| R::splat(c.right[i]).mul_add(sx, R::splat(c.up[i]).mul_add(sy, R::splat(base(c, i)))))
-        };
+        let across = |base: fn(&CameraFrame, usize) -> f64| three!(i => R::splat(c.right[i]).mul_add(sx, R::splat(c.up[i]).mul_add(sy, R::splat(base(c, i)))));
         if c.parallel {
-            (across(|_, _| 0.0), each3(c.forward, R::splat))
+            (across(|_, _| 0.0), each3!(c.forward, x => R::splat(x)))
         } else {
             ([R::zero(); 3], across(|c, i| c.forward[i]))
         }

@@ -62,9 +62,9 @@ pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &m
     let margin = margin(L::UNIT_ROUNDOFF);
     let origins = bounds_of(&rays.o, rays.len);
     let unit = |i: usize| -> [f64; 3] {
-        let d = three(|c| rays.d[c][i].to_f64());
+        let d = three!(c => rays.d[c][i].to_f64());
         let len = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-        each3(d, |x| x / len)
+        each3!(d, x => x / len)
     };
     let sum = (0..rays.len).map(unit).fold([0.0; 3], |s, d| [s[0] + d[0], s[1] + d[1], s[2] + d[2]]);
     let len = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();

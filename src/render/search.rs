@@ -3,7 +3,7 @@
 use super::batch::{HitColumns, NONE, RayBatch};
 use super::bounds::{Bounds, larger};
 use super::candidates::Candidates;
-use super::tracer::nearest;
+use super::nearest::nearest;
 use super::world::World;
 use crate::math::hash::KeyedHash;
 use crate::math::real::three;
@@ -47,7 +47,7 @@ impl Search {
                 search.hits += (found[1].id[i] != NONE) as u64;
                 if what(&found[0], i) != what(&found[1], i) {
                     search.differing += 1;
-                    search.first = search.first.or(Some((three(|c| batch.o[c][i]), three(|c| batch.d[c][i]))));
+                    search.first = search.first.or(Some((three!(c => batch.o[c][i]), three!(c => batch.d[c][i]))));
                 }
             }
             search.rays += batch.len as u64;
@@ -69,7 +69,7 @@ fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     let pick = |k: u64| leaves.get((unit(k) * leaves.len() as f64) as usize).map_or(ANYWHERE, |l| l.1);
     // A coordinate between the faces of the box, on one of them, or beyond them by up to its size.
     let within = |b: Bounds, k: u64, spread: f64| {
-        three(|i| {
+        three!(i => {
             let s = match (unit(k + i as u64) * 4.0) as u32 {
                 0 => 0.0,
                 1 => 1.0,
@@ -80,7 +80,7 @@ fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     };
     let o = if unit(1) < 0.25 { [0.0; 3] } else { within(pick(2), 10, 3.0) };
     let target = within(pick(3), 20, 1.0);
-    let mut d = three(|i| target[i] - o[i]);
+    let mut d = three!(i => target[i] - o[i]);
     if unit(4) < 0.1 {
         d[(unit(5) * 3.0) as usize] = 0.0;
     }

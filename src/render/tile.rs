@@ -89,9 +89,6 @@ impl<'w, L: Lane> TileWorker<'w, L> {
                 }
                 self.camera_rays(tile, [sx, sy]);
                 self.tracer.recorder().sample();
-                for c in &mut self.tracer.radiance {
-                    c[..n].fill(L::Elem::default());
-                }
                 match self.world.camera.at_eye() {
                     true => self.tracer.trace::<true>(),
                     false => self.tracer.trace::<false>(),

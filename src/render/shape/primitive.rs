@@ -44,6 +44,13 @@ pub enum Kind {
     Triangle(u32),
 }
 
+impl Kind {
+    /// Whether shading normals may differ from geometric ones.
+    pub fn may_be_smooth(&self) -> bool {
+        matches!(self, Kind::Triangle(_))
+    }
+}
+
 /// The world's tables that primitives refer to.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables<'w> {
@@ -110,7 +117,7 @@ impl Primitive {
         if let Kind::Triangle(i) = self.kind {
             let tri = &tables.triangles[i as usize];
             let (point, local) = triangle::point(tri, o, d);
-            let offset = dot(each3(point.n, |x| x.abs()), point.error);
+            let offset = dot(each3!(point.n, x => x.abs()), point.error);
             let ns = triangle::shading_normal(tri, local, point.n);
             return Surface { p: point.p, n: point.n, ns, offset, local };
         }
@@ -128,7 +135,7 @@ impl Primitive {
             p: self.frame.point_to_world(tables.maps, point.p),
             n,
             ns: n,
-            offset: dot(each3(n, |x| x.abs()), error),
+            offset: dot(each3!(n, x => x.abs()), error),
             local: point.p,
         }
     }

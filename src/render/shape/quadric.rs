@@ -129,7 +129,7 @@ fn judged_again<R: Real>(ray: &LocalRay<R>, t0: R, form: &impl Quadric, doubt: R
     let real = R::select(rough.real, one, zero);
     let rough_numbers = [rough.lo.tau, rough.lo.t, rough.hi.tau, rough.hi.t, real];
     let [lo_tau, lo_t, hi_tau, hi_t, real] = R::again(doubt, given, rough_numbers, |v| {
-        let (whole, nothing) = (|k: usize| three(|i| v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
+        let (whole, nothing) = (|k: usize| three!(i => v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
         let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
         let x = roots(&exact, exact.nearest(), form, None);
         let real = Real::select(x.real, Real::one(), Real::zero());
