@@ -41,9 +41,8 @@ impl<L: Lane> ShadowRays<'_, L> {
     /// Visits the crossings with surface `k`.
     #[inline(always)]
     fn crossings(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
-        let here = self.source.same(L::splat(k as f64));
-        let own = Own { here, part: self.part, outward: self.outward.same(L::one()) };
-        world.crossings::<L, false>(k, (self.o, self.l), Some(own), visit);
+        let own = Own::of(self.source.same(L::splat(k as f64)), self.part, self.outward.same(L::one()));
+        world.crossings::<L, false>(k, (self.o, self.l), own, visit);
     }
 
     /// The crossings with surface `k` that lie between start and light; in a function of its own, for it is seldom asked.

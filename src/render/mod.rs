@@ -34,6 +34,7 @@ mod run;
 mod search;
 mod shade;
 pub mod shape;
+mod span;
 mod spawn;
 mod surface_pattern;
 mod texture;

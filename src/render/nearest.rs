@@ -87,8 +87,8 @@ impl<L: Lane> Nearest<L> {
             || {
                 let outward = L::one().same(start.outward);
                 for &k in ids {
-                    let own = Own { here: start.primitive.same(L::splat(k as f64)), part: start.part, outward };
-                    self.test::<false>(world, k, (start.o, start.d), Some(own));
+                    let own = Own::of(start.primitive.same(L::splat(k as f64)), start.part, outward);
+                    self.test::<false>(world, k, (start.o, start.d), own);
                 }
             },
         );

@@ -1,7 +1,7 @@
 //! Rays as the kernels see them: in the frame of one shape, with what rounding left out of the origin.
 
-use crate::math::Real;
 use crate::math::real::{dot, each3, three};
+use crate::math::{Mask, Real};
 
 /// A ray in a shape's own frame. `t` is the same number as in the world.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +65,12 @@ pub struct Own<R: Real> {
 }
 
 impl<R: Real> Own<R> {
+    /// Where any lane starts `here`; mostly none does, and what follows from it needn't be computed.
+    #[inline(always)]
+    pub fn of(here: R::Mask, part: R, outward: R::Mask) -> Option<Own<R>> {
+        if here.any() { Some(Own { here, part, outward }) } else { None }
+    }
+
     /// Lanes that start on `part` of this primitive.
     #[inline(always)]
     pub fn on(&self, part: R) -> R::Mask {

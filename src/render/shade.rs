@@ -1,7 +1,7 @@
 //! Shades the hits of one run: points and normals first, then light by light, then colour and the rays that follow.
 
 use super::batch::{Column, Column3, HitColumns, RayBatch, column, column3, load3, store3};
-use super::bounds::{Bounds, smaller};
+use super::bounds::Bounds;
 use super::candidates::Candidates;
 use super::cull::{Shaft, margin};
 use super::footprint::Recorder;
@@ -14,6 +14,7 @@ use super::place::RESIDUE;
 use super::run::LaneGroup;
 use super::shape::Surface;
 use super::shape::primitive::spawn_point;
+use super::span::Span;
 use super::spawn::{Children, Leaving};
 use super::surface_pattern::{PatternFrame, bumped};
 use super::world::{PointLight, World};
@@ -112,7 +113,7 @@ impl<E: Elem> RunOfHits<'_, E> {
     #[inline(always)]
     fn surfaces<L: Lane<Elem = E>, const AT_EYE: bool>(&self, s: &mut ShadeScratch<E>) -> Bounds {
         let (rays, hits) = (self.hits.rays, self.hits.hits);
-        let (mut lo, mut hi) = ([L::splat(f64::INFINITY); 3], [L::splat(f64::NEG_INFINITY); 3]);
+        let mut points = Span::<L>::new();
         for group in self.hits.groups {
             let g = group.first as usize;
             let d = load3::<L>(&rays.d, g);
@@ -145,13 +146,9 @@ impl<E: Elem> RunOfHits<'_, E> {
             }
             surface.offset.store(&mut s.offset[g..]);
             L::select(inside, L::one(), L::zero()).store(&mut s.inside[g..]);
-            let live = L::Mask::from_bits(group.bits);
-            for c in 0..3 {
-                lo[c] = L::select(live, surface.p[c].min(lo[c]), lo[c]);
-                hi[c] = L::select(live, surface.p[c].max(hi[c]), hi[c]);
-            }
+            points.hold(L::Mask::from_bits(group.bits), surface.p);
         }
-        Bounds { lo: three!(c => least(lo[c])), hi: three!(c => -least(-hi[c])) }
+        points.bounds()
     }
 
     /// What may stand between the hits, which lie in `points`, and each light.
@@ -348,18 +345,6 @@ fn surface_of_another<L: Lane>(
             }
         },
     )
-}
-
-/// The smallest of a register's numbers.
-#[inline(always)]
-fn least<L: Lane>(x: L) -> f64 {
-    let mut lanes = [L::Elem::default(); super::batch::PADDING];
-    x.store(&mut lanes);
-    let mut least = f64::INFINITY;
-    for x in &lanes[..L::WIDTH] {
-        least = smaller(x.to_f64(), least);
-    }
-    least
 }
 
 /// x^exponent for 0 < x ≤ 1. A constant whole exponent goes by squaring.
