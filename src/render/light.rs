@@ -38,6 +38,13 @@ pub struct ShadowRays<'w, L: Lane> {
 }
 
 impl<L: Lane> ShadowRays<'_, L> {
+    /// The lanes that start on surface `k` and surely don't meet it again.
+    #[inline(always)]
+    fn left_for_good(&self, world: &World, k: u32) -> L::Mask {
+        let never = world.primitive(k).kind.is_left_for_good();
+        L::Mask::splat(never) & self.source.same(L::splat(k as f64)) & self.outward.same(L::one())
+    }
+
     /// Visits the crossings with surface `k`.
     #[inline(always)]
     fn crossings(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
@@ -145,6 +152,9 @@ impl<L: Lane> Open<'_, L> {
             #[inline(always)]
             || {
                 for &k in ids {
+                    if !(self.mask & !self.rays.left_for_good(world, k)).any() {
+                        continue;
+                    }
                     match world.constant_transmission(k) {
                         Some([0.0, 0.0, 0.0]) => self.test(world, k, recorder),
                         Some([1.0, 1.0, 1.0]) => {}

@@ -5,7 +5,7 @@ use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::Visit;
 use super::world::World;
-use crate::math::{Lane, Real};
+use crate::math::{Lane, Mask, Real};
 
 /// Finds the nearest crossing in front of each ray's origin. `AT_EYE` says that all origins are exactly 0.
 #[inline(always)]
@@ -32,6 +32,7 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
                 primitive: L::load(&rays.source[g..]),
                 part: L::load(&rays.source_part[g..]),
                 outward: L::load(&rays.outward[g..]),
+                live: L::Mask::first((rays.len - g).min(L::WIDTH)),
             };
             if !candidates.ids.is_empty() {
                 best.test_all(world, &candidates.ids, &start);
@@ -47,7 +48,7 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
 }
 
 /// Rays and where they start.
-struct Start<R> {
+struct Start<R: Real> {
     o: [R; 3],
     d: [R; 3],
     /// The primitive, or [`NONE`].
@@ -55,11 +56,20 @@ struct Start<R> {
     part: R,
     /// 1 where they leave it to the outside.
     outward: R,
+    /// Lanes that hold a ray.
+    live: R::Mask,
 }
 
 impl<R: Real> Start<R> {
     fn at_eye(d: [R; 3]) -> Start<R> {
-        Start { o: [R::zero(); 3], d, primitive: R::splat(NONE), part: R::zero(), outward: R::zero() }
+        Start {
+            o: [R::zero(); 3],
+            d,
+            primitive: R::splat(NONE),
+            part: R::zero(),
+            outward: R::zero(),
+            live: Mask::splat(true),
+        }
     }
 }
 
@@ -87,7 +97,12 @@ impl<L: Lane> Nearest<L> {
             || {
                 let outward = L::one().same(start.outward);
                 for &k in ids {
-                    let own = Own::of(start.primitive.same(L::splat(k as f64)), start.part, outward);
+                    let here = start.primitive.same(L::splat(k as f64));
+                    let left = here & outward & L::Mask::splat(world.primitive(k).kind.is_left_for_good());
+                    if !(start.live & !left).any() {
+                        continue;
+                    }
+                    let own = Own::of(here, start.part, outward);
                     self.test::<false>(world, k, (start.o, start.d), own);
                 }
             },

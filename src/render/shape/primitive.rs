@@ -45,6 +45,15 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Whether a ray that leaves it to the outside never meets it again.
+    pub fn is_left_for_good(&self) -> bool {
+        match self {
+            Kind::Sphere(_) | Kind::Plane | Kind::Disc { .. } | Kind::Cuboid(_) | Kind::Triangle(_) => true,
+            Kind::Tube(tube) => tube.caps,
+            Kind::Ring(_) => false,
+        }
+    }
+
     /// Whether shading normals may differ from geometric ones.
     pub fn may_be_smooth(&self) -> bool {
         matches!(self, Kind::Triangle(_))
