@@ -1,6 +1,6 @@
 //! Whether the tree finds what testing every surface finds: the same t, to the bit, and the same surface.
 
-use super::batch::{HitColumns, NONE, RayBatch};
+use super::batch::{HitColumns, MOST, NONE, RayBatch};
 use super::bounds::{Bounds, larger};
 use super::candidates::Candidates;
 use super::nearest::nearest;
@@ -29,9 +29,9 @@ impl Search {
         let by_tree = Candidates { ids: planes, tree: true };
         let by_list = Candidates { ids: (0..world.primitives.len() as u32).collect(), tree: false };
         let mut search = Search::default();
-        let (mut batch, mut found) = (RayBatch::<f64>::new(ROOM), [HitColumns::new(ROOM), HitColumns::new(ROOM)]);
+        let (mut batch, mut found) = (RayBatch::<f64>::default(), [HitColumns::default(), HitColumns::default()]);
         while search.rays < rays {
-            batch.len = (rays - search.rays).min(ROOM as u64) as usize;
+            batch.len = (rays - search.rays).min(MOST as u64) as usize;
             for i in 0..batch.len {
                 let (o, d) = ray(world, KeyedHash::new().with(lot).with(search.rays + i as u64));
                 for c in 0..3 {
@@ -58,9 +58,6 @@ impl Search {
 
 /// Rays run along an axis plane, or at a larger angle than this to it: 2^-40, thousands of roundings.
 const LEAST_ANGLE: f64 = 1.0 / (1u64 << 40) as f64;
-
-/// Rays at a time.
-const ROOM: usize = 256;
 
 /// Origin and direction.
 fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
