@@ -1,6 +1,7 @@
 //! Registers of 256 bits: four `f64`, eight `f32`.
 
 use super::common;
+use crate::math::real::Task;
 use crate::math::{Dd, Lane, Mask, Real};
 use std::arch::x86_64::*;
 
@@ -136,6 +137,10 @@ macro_rules! register {
                 unsafe { $name($max(self.0, o.0)) }
             }
             common!(@each $mask, $width);
+            #[inline(always)]
+            fn alone<T: Task>(task: T) -> T::Output {
+                unsafe { super::alone(task) }
+            }
             #[inline(always)]
             fn vectorize<T>(f: impl FnOnce() -> T) -> T {
                 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
