@@ -4,11 +4,13 @@
 pub mod buffer;
 pub mod develop;
 pub mod format;
+pub mod png;
 pub mod recipe;
 pub mod write;
 
-pub use buffer::Film;
+pub use buffer::{Digest, Film};
 pub use develop::{Depth, Developer};
 pub use format::{Format, encode};
+pub use png::{Compression, PngWriter};
 pub use recipe::Recipe;
 pub use write::OutputFile;
