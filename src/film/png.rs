@@ -37,8 +37,8 @@ struct Chunks<W: Write> {
     bytes: Vec<u8>,
 }
 
-/// Compressed bytes a chunk: few chunks, and little memory.
-const CHUNK: usize = 1 << 15;
+/// Compressed bytes a chunk: a picture for a screen is one chunk.
+const CHUNK: usize = 1 << 20;
 
 /// The filter's number in the file. Of the filters it makes the smallest files, choosing one for each row included.
 const PAETH: u8 = 4;
@@ -66,7 +66,7 @@ impl<W: Write> PngWriter<W> {
             let (name, value) = (name.to_string(), value.to_string());
             if value.is_ascii() { encoder.add_text_chunk(name, value) } else { encoder.add_itxt_chunk(name, value) }?;
         }
-        let chunks = Chunks { writer: encoder.write_header()?, bytes: Vec::with_capacity(CHUNK + 8) };
+        let chunks = Chunks { writer: encoder.write_header()?, bytes: Vec::new() };
         let deflate = match compression {
             Compression::Fast => Deflate::Fast(fdeflate::Compressor::new(chunks)?),
             Compression::Small => Deflate::Small(ZlibEncoder::new(chunks, flate2::Compression::best())),
