@@ -106,18 +106,29 @@ impl Developer {
 
     /// Adds the codes of pixels as a file holds them: 16 bits with the larger byte first.
     pub fn develop(&self, pixels: &[[f32; 3]], out: &mut Vec<u8>) {
-        let channels = pixels.as_flattened();
         match &self.0 {
-            Table::Eight(table) => out.extend(channels.iter().map(|&v| code_8(table, v))),
-            Table::Sixteen(table) => {
-                let before = out.len();
-                out.resize(before + 2 * channels.len(), 0);
-                for (bytes, &v) in out[before..].as_chunks_mut().0.iter_mut().zip(channels) {
-                    *bytes = code_16(table, v).to_be_bytes();
-                }
-            }
+            Table::Eight(table) => fill(pixels, out, |v| [code_8(table, v)]),
+            Table::Sixteen(table) => fill(pixels, out, |v| code_16(table, v).to_be_bytes()),
         }
     }
+}
+
+fn fill<const N: usize>(pixels: &[[f32; 3]], out: &mut Vec<u8>, code: impl Fn(f32) -> [u8; N]) {
+    let before = out.len();
+    out.resize(before + N * 3 * pixels.len(), 0);
+    let (codes, _) = out[before..].as_chunks_mut::<N>();
+    match pixels.first() {
+        // Much of many pictures is background.
+        Some(pixel) if is_uniform(pixels.as_flattened()) => codes.as_chunks_mut().0.fill(pixel.map(code)),
+        _ => codes.iter_mut().zip(pixels.as_flattened()).for_each(|(place, v)| *place = code(*v)),
+    }
+}
+
+/// Whether all pixels are equal. Many are compared before it is asked, so that lanes can do it.
+fn is_uniform(channels: &[f32]) -> bool {
+    let next = channels.get(3..).unwrap_or(&[]);
+    let equal = |(a, b): (&[f32], &[f32])| a.iter().zip(b).fold(true, |all, (a, b)| all & (a == b));
+    next.chunks(64).zip(channels.chunks(64)).all(equal)
 }
 
 #[inline(always)]
@@ -234,11 +245,15 @@ mod tests {
 
     #[test]
     fn a_row_has_the_codes_of_its_channels() {
-        let pixels: Vec<[f32; 3]> = (0..50).map(|i| [i as f32 / 40.0, -0.1, (i as f32 / 50.0).powi(3)]).collect();
+        let pixels: Vec<[f32; 3]> = (0..50).map(|i| [i as f32 / 40.0, -0.1, i as f32 * i as f32 / 9e3]).collect();
         let codes = |depth| pixels.as_flattened().iter().map(move |&v| Developer::of(depth).code(v));
         let mut row = vec![9];
         Developer::of(Depth::Eight).develop(&pixels, &mut row);
         assert!(row[0] == 9 && row[1..].iter().map(|&b| b as u16).eq(codes(Depth::Eight)));
+        row.clear();
+        Developer::of(Depth::Eight).develop(&[[0.2, 0.5, f32::NAN], [0.2, 0.5, 0.0]], &mut row);
+        Developer::of(Depth::Eight).develop(&[[0.2, 0.5, 1.0]; 2], &mut row);
+        assert_eq!(row, [124, 188, 0, 124, 188, 0, 124, 188, 255, 124, 188, 255]);
         row.clear();
         Developer::of(Depth::Sixteen).develop(&pixels, &mut row);
         assert!(row.chunks(2).map(|b| u16::from_be_bytes([b[0], b[1]])).eq(codes(Depth::Sixteen)));

@@ -69,7 +69,7 @@ impl<W: Write> PngWriter<W> {
         let chunks = Chunks { writer: encoder.write_header()?, bytes: Vec::new() };
         let deflate = match compression {
             Compression::Fast => Deflate::Fast(fdeflate::Compressor::new(chunks)?),
-            Compression::Small => Deflate::Small(ZlibEncoder::new(chunks, flate2::Compression::best())),
+            Compression::Small => Deflate::Small(ZlibEncoder::new(chunks, flate2::Compression::default())),
         };
         let pixel = 3 * depth.bytes();
         let row = width as usize * pixel;

@@ -2,7 +2,6 @@
 //! scenes read pictures.
 
 use std::io::Cursor;
-use std::sync::Arc;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
@@ -15,7 +14,7 @@ pub struct Picture {
     /// Texels down; at least 1.
     pub height: u32,
     /// `width × height` texels, row by row; row 0 is the top.
-    pub texels: Arc<[[u8; 3]]>,
+    pub texels: Vec<[u8; 3]>,
 }
 
 /// Why a file gives no picture.
@@ -60,10 +59,8 @@ fn read_png(bytes: &[u8], allowed: impl Fn(u32, u32) -> Result<(), ReadError>) -
     let form = reader.output_color_type();
     if form == (png::ColorType::Rgb, png::BitDepth::Eight) {
         // Where they stay: copying a large picture takes a good part of the time of decoding it.
-        let mut texels: Arc<[[u8; 3]]> = std::iter::repeat_n([0; 3], width as usize * height as usize).collect();
-        if let Some(place) = Arc::get_mut(&mut texels) {
-            reader.next_frame(place.as_flattened_mut()).map_err(damaged)?;
-        }
+        let mut texels = vec![[0; 3]; width as usize * height as usize];
+        reader.next_frame(texels.as_flattened_mut()).map_err(damaged)?;
         return Ok(Picture { width, height, texels });
     }
     let mut data = vec![0; reader.output_buffer_size().ok_or(ReadError::Damaged("PNG"))?];
@@ -94,7 +91,7 @@ fn read_jpeg(bytes: &[u8], allowed: impl Fn(u32, u32) -> Result<(), ReadError>) 
     let color = if is_gray { ColorSpace::Luma } else { ColorSpace::RGB };
     decoder.set_options(options.jpeg_set_out_colorspace(color));
     let data = decoder.decode().map_err(|_| DAMAGED)?;
-    let texels: Arc<[[u8; 3]]> = match is_gray {
+    let texels: Vec<[u8; 3]> = match is_gray {
         true => data.into_iter().map(|v| [v; 3]).collect(),
         false => data.as_chunks().0.into(),
     };

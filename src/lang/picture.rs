@@ -19,5 +19,5 @@ pub fn decode(path: &Path, bytes: &[u8], digest: [u8; 32], limits: &Limits) -> R
         ReadError::TooLarge(width, height) => format!("it is too large: {width} × {height}"),
     })?;
     let (width, height) = (picture.width, picture.height);
-    Ok(Image { path: path.to_owned(), digest, width, height, texels: picture.texels })
+    Ok(Image { path: path.to_owned(), digest, width, height, texels: picture.texels.into() })
 }

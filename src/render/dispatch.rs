@@ -320,4 +320,34 @@ mod tests {
             assert!(best.rays.transmitted > 1000 && best.film == common.film);
         }
     }
+
+    #[test]
+    fn rows_that_go_out_are_those_of_the_film() {
+        let scene = scene();
+        let world = World::build(&scene, &scene.cameras[0]);
+        let settings = Options { width: 61, height: 47, ..Options::from_settings(&scene.settings) };
+        let part = Some(Crop { x: 9, y: 5, width: 40, height: 33 });
+        let to_bytes = |pixels: &[[f32; 3]], out: &mut Vec<u8>| {
+            out.extend(pixels.as_flattened().iter().flat_map(|v| v.to_bits().to_le_bytes()));
+        };
+        let work = (&Silent as &dyn Progress, &AtomicBool::new(false));
+        for (threads, tile, crop) in [(1, 16, None), (2, 7, part), (8, 1, None), (3, 32, part)] {
+            let options = Options { threads: Some(threads), tile, crop, ..settings.clone() };
+            let whole = render(&world, &options, work.0, work.1).expect("not cancelled");
+            let mut out = Vec::new();
+            let mut take = |rows: &[u8]| {
+                out.extend_from_slice(rows);
+                Ok(())
+            };
+            let done = stream(&world, &options, work, (12, &to_bytes), &mut take).unwrap().expect("not cancelled");
+            let mut expected = Vec::new();
+            to_bytes(&whole.film.pixels, &mut expected);
+            assert!(out == expected && done.rays == whole.rays, "{threads} threads, tiles of {tile}");
+        }
+        let mut full = |_: &[u8]| Err(io::ErrorKind::StorageFull.into());
+        let fault = stream(&world, &settings, work, (12, &to_bytes), &mut full).unwrap_err();
+        assert_eq!(fault.kind(), io::ErrorKind::StorageFull);
+        let given_up = (work.0, &AtomicBool::new(true));
+        assert!(matches!(stream(&world, &settings, given_up, (12, &to_bytes), &mut |_| Ok(())), Ok(None)));
+    }
 }
