@@ -125,6 +125,15 @@ pub struct Rendered {
     pub threads: usize,
 }
 
+/// A finished picture that went out row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streamed {
+    /// Rays by kind.
+    pub rays: RayCounts,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
 /// One ability of the renderer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature {

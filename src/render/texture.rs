@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub struct Texture {
     width: usize,
     height: usize,
-    texels: Arc<[[u8; 3]]>,
+    texels: Arc<Vec<[u8; 3]>>,
     linear: Box<[f64; 256]>,
 }
 
