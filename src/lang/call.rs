@@ -4,9 +4,10 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Call, Frame, Machine, word_name};
+use super::scalar::{Fast, Other};
 use super::suggest::property_meant;
 use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
-use super::word::{Default, Run, Word, described};
+use super::word::{Args, Default, Run, Word, described};
 use crate::diag::Span;
 use ecow::EcoString;
 use std::sync::Arc;
@@ -67,7 +68,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Checks a word's arguments and runs it.
-    fn run_word(&mut self, id: BuiltinId, values: &mut [Value], span: Span, args: &[(u16, Node)]) -> Outcome {
+    pub fn run_word(&mut self, id: BuiltinId, values: &mut [Value], span: Span, args: &[(u16, Node)]) -> Outcome {
         let word = catalog::word(id);
         if let (Run::Number(f), [Value::Number(x)]) = (&word.run, &*values) {
             let y = f(*x);
@@ -93,6 +94,7 @@ impl<'p> Machine<'p> {
         self.argument = args.iter().find(|(i, _)| *i == 0).map_or(span, |(_, node)| node.span);
         let result = match &word.run {
             Run::Call(run) => run(self, values),
+            Run::Angle(f) => Ok(Value::Number(f(values.number(0)))),
             Run::Number(_) | Run::Constant(_) | Run::Syntax => Ok(Value::None),
         };
         let result = result.and_then(|value| match value.is_finite() {
@@ -113,18 +115,18 @@ impl<'p> Machine<'p> {
         args: &'p [Option<Node>],
         span: Span,
         frame: Frame<'_>,
-    ) -> Outcome {
+    ) -> Fast {
         let closure = match callee {
             None => None,
-            Some(node) => match self.eval(node, frame)? {
+            Some(node) => match self.fresh(node, frame)? {
                 Value::Function(c) => Some(c),
-                _ => return Err(Stop::Reported),
+                _ => return Err(self.stop(Stop::Reported)),
             },
         };
         let base = self.stack.len();
         for arg in args {
             let value = match arg {
-                Some(node) => self.eval(node, frame)?,
+                Some(node) => self.fresh(node, frame)?,
                 None => Value::Unset,
             };
             self.stack.push(value);
@@ -133,30 +135,41 @@ impl<'p> Machine<'p> {
     }
 
     /// Runs a function whose arguments are on the stack from `base`.
-    fn enter(&mut self, function: FunctionId, closure: Option<&Arc<Closure>>, base: usize, span: Span) -> Outcome {
+    fn enter(&mut self, function: FunctionId, closure: Option<&Arc<Closure>>, base: usize, span: Span) -> Fast {
         let program = self.program;
-        let Some(f) = program.functions.get(function.0 as usize) else { return Err(Stop::Reported) };
-        self.step(span)?;
+        let Some(f) = program.functions.get(function.0 as usize) else { return Err(self.stop(Stop::Reported)) };
+        self.step(span).map_err(|stop| self.stop(stop))?;
         self.nesting += f.depth as usize;
         if self.calls.len() >= self.limits.call_depth || self.nesting > self.limits.nesting {
-            let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len()))
-                .label(format!("{} calls itself without an end?", called(&f.name)))
-                .note("a function that calls itself needs a case in which it doesn't");
-            return Err(self.fail(fault, span));
+            let stop = self.too_nested(f, span);
+            return Err(self.stop(stop));
         }
         self.calls.push(Call { function, base, span, frame: None });
-        self.stack.resize(base + f.slots as usize, Value::Unset);
+        for _ in self.stack.len()..base + f.slots as usize {
+            self.stack.push(Value::Unset);
+        }
         let frame = Frame { base, closure };
         for (i, p) in f.params.iter().enumerate() {
             if let (Some(default), Value::Unset) = (&p.default, &self.stack[base + i]) {
-                self.stack[base + i] = self.eval(default, frame)?;
+                self.stack[base + i] = self.fresh(default, frame)?;
             }
         }
-        let value = self.eval(&f.body, frame)?;
-        self.stack.truncate(base);
-        self.calls.pop();
-        self.nesting -= f.depth as usize;
-        Ok(value)
+        let value = self.scalar(&f.body, frame);
+        // After a mistake things stay as they are: whoever goes on puts them right.
+        if value.is_ok() || self.other.is_ok() {
+            self.stack.truncate(base);
+            self.calls.pop();
+            self.nesting -= f.depth as usize;
+        }
+        value
+    }
+
+    #[cold]
+    fn too_nested(&mut self, f: &FnCode, span: Span) -> Stop {
+        let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len()))
+            .label(format!("{} calls itself without an end?", called(&f.name)))
+            .note("a function that calls itself needs a case in which it doesn't");
+        self.fail(fault, span)
     }
 
     /// A call of a value. `callee` is its text, and `hides` where that is bound if it hides a built-in word.
@@ -260,7 +273,10 @@ impl<'p> Machine<'p> {
             Value::Function(c) => {
                 let base = self.stack.len();
                 self.stack.extend(placed);
-                self.enter(c.function, Some(c), base, span)
+                match self.enter(c.function, Some(c), base, span) {
+                    Ok(scalar) => Ok(scalar.into()),
+                    Err(Other) => self.take(),
+                }
             }
             _ => Ok(Value::None),
         }

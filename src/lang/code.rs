@@ -52,6 +52,7 @@ pub enum Code {
         word: BuiltinId,
         args: Box<[(u16, Node)]>,
     },
+    Apply(Box<Apply>),
     /// A function known beforehand: one argument a parameter. `callee` is its value, where it carries captures.
     Call {
         function: FunctionId,
@@ -70,12 +71,33 @@ pub enum Code {
         body: Box<Node>,
     },
     Index(Box<(Node, Node)>),
-    Field(Box<Node>, EcoString),
+    Field {
+        of: Box<Node>,
+        name: EcoString,
+        /// The item that `.x`, `.y` or `.z` is.
+        item: Option<u8>,
+    },
     With(Box<Node>, Box<[ArgCode]>),
     Closure(FunctionId, Box<[CaptureFrom]>),
     /// A module as a record: its exports' slots.
     Module(Box<[(EcoString, u32)]>),
     Param(Box<ParamCode>),
+}
+
+/// A word that makes a number of one number or angle, and its argument, placed as in a `CallBuiltin`.
+#[derive(Debug)]
+pub struct Apply {
+    pub word: BuiltinId,
+    pub formula: Formula,
+    pub args: [(u16, Node); 1],
+}
+
+/// What such a word computes.
+#[derive(Clone, Copy, Debug)]
+pub enum Formula {
+    OfNumber(fn(f64) -> f64),
+    /// In degrees.
+    OfAngle(fn(f64) -> f64),
 }
 
 #[derive(Debug)]

@@ -25,6 +25,8 @@ pub struct Machine<'p> {
     pub calls: Vec<Call>,
     /// Expressions within each other over all running calls.
     pub nesting: usize,
+    /// What the part that has just run gave, where that is no scalar.
+    pub other: Outcome,
     /// What the scene blocks around have been given.
     pub collected: Vec<Vec<NodeId>>,
     /// The lists being made.

@@ -31,6 +31,7 @@ mod reference;
 pub mod request;
 mod resolve;
 mod running;
+mod scalar;
 mod scan;
 mod scope;
 mod suggest;
@@ -171,6 +172,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
         stack: Vec::new(),
         calls: Vec::new(),
         nesting: 0,
+        other: Ok(Value::None),
         collected: Vec::new(),
         lists: Vec::new(),
         text_bytes: 0,

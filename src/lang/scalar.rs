@@ -1,0 +1,350 @@
+//! The fast way of the evaluator: what is a number, an angle or a truth value goes from part to part in registers. All else,
+//! a mistake too, is left in the machine, and passed on from there.
+
+use super::ast::Op;
+use super::code::*;
+use super::fault::{Outcome, Stop};
+use super::machine::{Frame, Machine};
+use super::ops;
+use super::value::Value;
+use crate::diag::Span;
+
+/// A value that fits a register.
+#[derive(Clone, Copy, Debug)]
+pub enum Scalar {
+    None,
+    False,
+    True,
+    Number(f64),
+    /// In degrees.
+    Angle(f64),
+}
+
+/// Not a [`Scalar`]: what it is stands in the machine, for whoever comes next.
+#[derive(Debug)]
+pub struct Other;
+
+/// A scalar; anything else is left in the machine.
+pub type Fast = Result<Scalar, Other>;
+
+impl From<bool> for Scalar {
+    fn from(b: bool) -> Scalar {
+        if b { Scalar::True } else { Scalar::False }
+    }
+}
+
+impl From<Scalar> for Value {
+    #[inline]
+    fn from(s: Scalar) -> Value {
+        match s {
+            Scalar::None => Value::None,
+            Scalar::False => Value::Bool(false),
+            Scalar::True => Value::Bool(true),
+            Scalar::Number(x) => Value::Number(x),
+            Scalar::Angle(x) => Value::Angle(x),
+        }
+    }
+}
+
+impl Value {
+    /// As a scalar, where it is one.
+    #[inline]
+    fn scalar(&self) -> Option<Scalar> {
+        match self {
+            Value::Number(x) => Some(Scalar::Number(*x)),
+            Value::Angle(x) => Some(Scalar::Angle(*x)),
+            Value::Bool(b) => Some((*b).into()),
+            Value::None => Some(Scalar::None),
+            _ => None,
+        }
+    }
+
+    /// Puts a value in this one's place. That most have nothing to let go of is seen here, without a call.
+    #[inline]
+    pub fn put(&mut self, value: Value) {
+        let old = std::mem::replace(self, value);
+        if matches!(old, Value::Number(_) | Value::Vec3(_) | Value::Unset | Value::Angle(_) | Value::Bool(_)) {
+            std::mem::forget(old);
+        }
+    }
+}
+
+impl<'p> Machine<'p> {
+    /// The value of a piece of program.
+    #[inline]
+    pub fn eval(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
+        match self.scalar(node, frame) {
+            Ok(scalar) => Ok(scalar.into()),
+            Err(Other) => self.take(),
+        }
+    }
+
+    /// What was left.
+    #[inline]
+    pub fn take(&mut self) -> Outcome {
+        std::mem::replace(&mut self.other, Ok(Value::None))
+    }
+
+    /// Leaves what isn't a scalar.
+    #[inline]
+    pub fn leave(&mut self, outcome: Outcome) -> Fast {
+        if let Ok(value) = &outcome
+            && let Some(scalar) = value.scalar()
+        {
+            return Ok(scalar);
+        }
+        self.other = outcome;
+        Err(Other)
+    }
+
+    /// Leaves a mistake.
+    #[cold]
+    pub fn stop(&mut self, stop: Stop) -> Other {
+        self.other = Err(stop);
+        Other
+    }
+
+    /// The value of a slot, where the node is no more than one.
+    #[inline]
+    fn slot<'a>(&'a self, node: &Node, frame: Frame<'a>) -> Option<&'a Value> {
+        match &node.code {
+            Code::Local(i) => Some(&self.stack[frame.base + *i as usize]),
+            Code::Global(i) => Some(&self.globals[*i as usize]),
+            Code::Capture(i) => frame.closure.and_then(|c| c.captures.get(*i as usize)),
+            _ => None,
+        }
+    }
+
+    /// As [`scalar`](Machine::scalar), and without a call for the leaves of the tree.
+    #[inline(always)]
+    fn operand(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+        match &node.code {
+            Code::Local(i) if let Some(s) = self.stack[frame.base + *i as usize].scalar() => Ok(s),
+            Code::Const(v) if let Some(s) = v.scalar() => Ok(s),
+            _ => self.scalar(node, frame),
+        }
+    }
+
+    /// The value of a piece of program.
+    pub fn scalar(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+        match &node.code {
+            Code::Const(v) => match v.scalar() {
+                Some(s) => Ok(s),
+                None => self.leave(Ok(v.clone())),
+            },
+            Code::Local(_) | Code::Global(_) | Code::Capture(_) => match self.slot(node, frame) {
+                Some(v) if let Some(s) = v.scalar() => Ok(s),
+                Some(v) => {
+                    let outcome = self.present(v, node.span);
+                    self.leave(outcome)
+                }
+                None => Err(self.stop(Stop::Reported)),
+            },
+            Code::Binary(op, ab) => self.binary(*op, ab, node.span, frame),
+            Code::Field { of, name, item } => {
+                if let Some(i) = item
+                    && let Some(Value::Vec3(v)) = self.slot(of, frame)
+                    && let Some(x) = v.get(usize::from(*i))
+                {
+                    return Ok(Scalar::Number(*x));
+                }
+                let outcome = self.eval(of, frame).and_then(|value| self.field(&value, name, node.span));
+                self.leave(outcome)
+            }
+            Code::Apply(apply) => self.apply(apply, node.span, frame),
+            Code::Call { function, callee, args } => {
+                self.call_known(*function, callee.as_deref(), args, node.span, frame)
+            }
+            Code::Block(nodes) => self.block(nodes, frame),
+            Code::If { arms, otherwise } => {
+                for (condition, body) in arms {
+                    if self.condition(condition, frame)? {
+                        return self.scalar(body, frame);
+                    }
+                }
+                otherwise.as_ref().map_or(Ok(Scalar::None), |n| self.scalar(n, frame))
+            }
+            Code::SetLocal(slot, value) => {
+                let value = self.fresh(value, frame)?;
+                self.stack[frame.base + *slot as usize].put(value);
+                Ok(Scalar::None)
+            }
+            Code::SetGlobal(slot, value) => {
+                let value = self.fresh(value, frame)?;
+                self.globals[*slot as usize].put(value);
+                Ok(Scalar::None)
+            }
+            Code::For(f) => self.for_(f, frame),
+            Code::While(w) => {
+                while self.condition(&w.0, frame)? {
+                    self.step(node.span).map_err(|stop| self.stop(stop))?;
+                    self.run_part(&w.1, frame)?;
+                }
+                Ok(Scalar::None)
+            }
+            Code::And(ab) => Ok((self.condition(&ab.0, frame)? && self.condition(&ab.1, frame)?).into()),
+            Code::Or(ab) => Ok((self.condition(&ab.0, frame)? || self.condition(&ab.1, frame)?).into()),
+            Code::Not(a) => Ok((!self.condition(a, frame)?).into()),
+            _ => {
+                let outcome = self.rare(node, frame);
+                self.leave(outcome)
+            }
+        }
+    }
+
+    /// A value; a mistake is left.
+    #[inline]
+    pub fn fresh(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Value, Other> {
+        match self.scalar(node, frame) {
+            Ok(scalar) => Ok(scalar.into()),
+            Err(Other) => self.take().map_err(|stop| self.stop(stop)),
+        }
+    }
+
+    /// Runs what has no value, or one that isn't asked for; a mistake is left.
+    #[inline]
+    pub fn run_part(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<(), Other> {
+        match self.scalar(node, frame) {
+            Ok(_) => Ok(()),
+            Err(Other) => self.take().map(drop).map_err(|stop| self.stop(stop)),
+        }
+    }
+
+    fn binary(&mut self, op: Op, ab: &'p (Node, Node), span: Span, frame: Frame<'_>) -> Fast {
+        let a = match self.operand(&ab.0, frame) {
+            Ok(a) => a,
+            Err(Other) => {
+                let a = self.take().map_err(|stop| self.stop(stop))?;
+                let b = self.fresh(&ab.1, frame)?;
+                return self.operate(op, &a, &b, span, ab);
+            }
+        };
+        let b = match self.operand(&ab.1, frame) {
+            Ok(b) => b,
+            Err(Other) => {
+                let b = self.take().map_err(|stop| self.stop(stop))?;
+                return self.operate(op, &a.into(), &b, span, ab);
+            }
+        };
+        use Scalar::{Angle, Number};
+        // What isn't finite is a mistake, or isn't for this way.
+        let fast = match (op, a, b) {
+            (Op::Add, Number(x), Number(y)) => Number(x + y),
+            (Op::Subtract, Number(x), Number(y)) => Number(x - y),
+            (Op::Multiply, Number(x), Number(y)) => Number(x * y),
+            (Op::Multiply, Number(x), Angle(y)) | (Op::Multiply, Angle(x), Number(y)) => Angle(x * y),
+            (Op::Divide | Op::Remainder, Number(x), Number(y)) if y != 0.0 => Number(ops::quotient(op, x, y)),
+            (Op::Less, Number(x), Number(y)) => return Ok((x < y).into()),
+            (Op::Greater, Number(x), Number(y)) => return Ok((x > y).into()),
+            _ => Number(f64::NAN),
+        };
+        match fast {
+            Number(x) | Angle(x) if x.is_finite() => Ok(fast),
+            _ => self.operate(op, &a.into(), &b.into(), span, ab),
+        }
+    }
+
+    /// An operator on any two values.
+    #[inline(never)]
+    fn operate(&mut self, op: Op, a: &Value, b: &Value, span: Span, ab: &'p (Node, Node)) -> Fast {
+        let outcome = ops::binary(op, a, b, &mut self.build, span).map_err(|f| {
+            let span = if f.argument == Some(1) { ab.1.span } else { span };
+            self.fail(f, span)
+        });
+        self.leave(outcome)
+    }
+
+    /// A word that makes a number of one number or angle.
+    fn apply(&mut self, apply: &'p Apply, span: Span, frame: Frame<'_>) -> Fast {
+        let [(_, of)] = &apply.args;
+        let mut value = match self.operand(of, frame) {
+            Ok(scalar) => {
+                let y = match (scalar, apply.formula) {
+                    (Scalar::Number(x), Formula::OfNumber(f)) => f(x),
+                    (Scalar::Angle(x), Formula::OfAngle(f)) => f(x + 0.0), // -0 is 0
+                    _ => f64::NAN,
+                };
+                if y.is_finite() {
+                    return Ok(Scalar::Number(y));
+                }
+                scalar.into()
+            }
+            Err(Other) => self.take().map_err(|stop| self.stop(stop))?,
+        };
+        let outcome = self.run_word(apply.word, std::slice::from_mut(&mut value), span, &apply.args);
+        self.leave(outcome)
+    }
+
+    /// The value of the last one. What is only added to the scene is independent of what comes after: a mistake in it
+    /// doesn't hide theirs.
+    fn block(&mut self, nodes: &'p [Node], frame: Frame<'_>) -> Fast {
+        let Some((last, before)) = nodes.split_last() else { return Ok(Scalar::None) };
+        let mut failed = false;
+        for n in before {
+            if self.build.is_cancelled() {
+                return Err(self.stop(Stop::Cancelled));
+            }
+            if let Code::Emit(_) = n.code {
+                failed |= self.attempt(n, frame).map_err(|stop| self.stop(stop))?.is_none();
+            } else {
+                self.run_part(n, frame)?;
+            }
+        }
+        if self.build.is_cancelled() {
+            return Err(self.stop(Stop::Cancelled));
+        }
+        let value = if let Code::Emit(_) = last.code {
+            failed |= self.attempt(last, frame).map_err(|stop| self.stop(stop))?.is_none();
+            Ok(Scalar::None)
+        } else if failed {
+            self.run_part(last, frame).map(|()| Scalar::None)
+        } else {
+            return self.scalar(last, frame);
+        };
+        if value.is_ok() && failed { Err(self.stop(Stop::Reported)) } else { value }
+    }
+
+    fn for_(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Fast {
+        let over = self.fresh(&f.over, frame)?;
+        let slot = frame.base + f.slot as usize;
+        if let Value::Range(range) = over {
+            for i in 0..range.len() {
+                self.turn(f, slot, Value::Number(range.from + i as f64), frame)?;
+            }
+            return Ok(Scalar::None);
+        }
+        if !matches!(over, Value::List(_) | Value::Vec3(_)) {
+            let stop = self.no_list(f, &over);
+            return Err(self.stop(stop));
+        }
+        for i in 0..over.length().unwrap_or(0) {
+            self.turn(f, slot, over.item(i).unwrap_or(Value::None), frame)?;
+        }
+        Ok(Scalar::None)
+    }
+
+    /// One turn of a loop.
+    #[inline]
+    fn turn(&mut self, f: &'p ForCode, slot: usize, item: Value, frame: Frame<'_>) -> Result<(), Other> {
+        self.step(f.over.span).map_err(|stop| self.stop(stop))?;
+        self.stack[slot].put(item);
+        if let Some(guard) = &f.guard
+            && !self.condition(guard, frame)?
+        {
+            return Ok(());
+        }
+        self.run_part(&f.body, frame)
+    }
+
+    /// Whether a condition holds.
+    fn condition(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<bool, Other> {
+        let value = match self.operand(node, frame) {
+            Ok(Scalar::True) => return Ok(true),
+            Ok(Scalar::False) => return Ok(false),
+            Ok(scalar) => scalar.into(),
+            Err(Other) => self.take().map_err(|stop| self.stop(stop))?,
+        };
+        let stop = self.no_condition(&value, node.span);
+        Err(self.stop(stop))
+    }
+}
