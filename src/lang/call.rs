@@ -4,7 +4,7 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Call, Frame, Machine, word_name};
-use super::scalar::{Fast, Other};
+use super::scalar::{Fast, Other, Scalar};
 use super::suggest::property_meant;
 use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
 use super::word::{Args, Default, Run, Word, described};
@@ -125,11 +125,16 @@ impl<'p> Machine<'p> {
         };
         let base = self.stack.len();
         for arg in args {
-            let value = match arg {
-                Some(node) => self.fresh(node, frame)?,
-                None => Value::Unset,
-            };
-            self.stack.push(value);
+            // Each kind is made where it stands: see `Value::put`.
+            match arg.as_ref().map(|node| self.operand(node, frame)) {
+                Some(Ok(Scalar::Number(x))) => self.stack.push(Value::Number(x)),
+                Some(Ok(scalar)) => self.stack.push(scalar.into()),
+                Some(Err(Other)) => {
+                    let value = self.left()?;
+                    self.stack.push(value);
+                }
+                None => self.stack.push(Value::Unset),
+            }
         }
         self.enter(function, closure.as_ref(), base, span)
     }

@@ -4,6 +4,7 @@ use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Frame, Machine};
 use super::ops;
+use super::scalar::Fast;
 use super::value::{Closure, Value};
 use super::word::described;
 use crate::diag::Span;
@@ -11,11 +12,27 @@ use ecow::{EcoString, EcoVec};
 use std::sync::Arc;
 
 impl<'p> Machine<'p> {
-    /// The value of what isn't for the fast way.
+    /// What isn't for the fast way.
     #[inline(never)]
-    pub fn rare(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
+    pub fn rare(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+        let outcome = self.any(node, frame);
+        self.leave(outcome)
+    }
+
+    fn any(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
         let span = node.span;
         match &node.code {
+            Code::Const(v) => Ok(v.clone()),
+            Code::Local(i) => self.present(&self.stack[frame.base + *i as usize], span),
+            Code::Global(i) => self.present(&self.globals[*i as usize], span),
+            Code::Capture(i) => match frame.closure.and_then(|c| c.captures.get(*i as usize)) {
+                Some(v) => self.present(v, span),
+                None => Err(Stop::Reported),
+            },
+            Code::Field { of, name, .. } => {
+                let value = self.eval(of, frame)?;
+                self.field(&value, name, span)
+            }
             Code::List(items) => self.list(items, span, frame),
             Code::CallBuiltin { word, args } => self.call_builtin(*word, args, span, frame),
             Code::CallValue { callee, args, hides } => {

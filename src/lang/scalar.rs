@@ -48,7 +48,7 @@ impl From<Scalar> for Value {
 
 impl Value {
     /// As a scalar, where it is one.
-    #[inline]
+    #[inline(always)]
     fn scalar(&self) -> Option<Scalar> {
         match self {
             Value::Number(x) => Some(Scalar::Number(*x)),
@@ -59,12 +59,13 @@ impl Value {
         }
     }
 
-    /// Puts a value in this one's place. That most have nothing to let go of is seen here, without a call.
-    #[inline]
-    pub fn put(&mut self, value: Value) {
-        let old = std::mem::replace(self, value);
-        if matches!(old, Value::Number(_) | Value::Vec3(_) | Value::Unset | Value::Angle(_) | Value::Bool(_)) {
-            std::mem::forget(old);
+    /// Puts a scalar in this one's place. A number on a number, by far the most frequent, is one store: to make a value and
+    /// copy it would have the copy wait for its parts.
+    #[inline(always)]
+    fn put(&mut self, scalar: Scalar) {
+        match (&mut *self, scalar) {
+            (Value::Number(old), Scalar::Number(new)) => *old = new,
+            (_, new) => *self = new.into(),
         }
     }
 }
@@ -83,6 +84,15 @@ impl<'p> Machine<'p> {
     #[inline]
     pub fn take(&mut self) -> Outcome {
         std::mem::replace(&mut self.other, Ok(Value::None))
+    }
+
+    /// What was left, where it is a value; a mistake is left again.
+    #[inline(never)]
+    pub fn left(&mut self) -> Result<Value, Other> {
+        match self.take() {
+            Ok(value) => Ok(value),
+            Err(stop) => Err(self.stop(stop)),
+        }
     }
 
     /// Leaves what isn't a scalar.
@@ -117,7 +127,7 @@ impl<'p> Machine<'p> {
 
     /// As [`scalar`](Machine::scalar), and without a call for the leaves of the tree.
     #[inline(always)]
-    fn operand(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+    pub fn operand(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
         match &node.code {
             Code::Local(i) if let Some(s) = self.stack[frame.base + *i as usize].scalar() => Ok(s),
             Code::Const(v) if let Some(s) = v.scalar() => Ok(s),
@@ -130,26 +140,21 @@ impl<'p> Machine<'p> {
         match &node.code {
             Code::Const(v) => match v.scalar() {
                 Some(s) => Ok(s),
-                None => self.leave(Ok(v.clone())),
+                None => self.rare(node, frame),
             },
             Code::Local(_) | Code::Global(_) | Code::Capture(_) => match self.slot(node, frame) {
                 Some(v) if let Some(s) = v.scalar() => Ok(s),
-                Some(v) => {
-                    let outcome = self.present(v, node.span);
-                    self.leave(outcome)
-                }
-                None => Err(self.stop(Stop::Reported)),
+                _ => self.rare(node, frame),
             },
             Code::Binary(op, ab) => self.binary(*op, ab, node.span, frame),
-            Code::Field { of, name, item } => {
+            Code::Field { of, item, .. } => {
                 if let Some(i) = item
                     && let Some(Value::Vec3(v)) = self.slot(of, frame)
                     && let Some(x) = v.get(usize::from(*i))
                 {
                     return Ok(Scalar::Number(*x));
                 }
-                let outcome = self.eval(of, frame).and_then(|value| self.field(&value, name, node.span));
-                self.leave(outcome)
+                self.rare(node, frame)
             }
             Code::Apply(apply) => self.apply(apply, node.span, frame),
             Code::Call { function, callee, args } => {
@@ -165,13 +170,17 @@ impl<'p> Machine<'p> {
                 otherwise.as_ref().map_or(Ok(Scalar::None), |n| self.scalar(n, frame))
             }
             Code::SetLocal(slot, value) => {
-                let value = self.fresh(value, frame)?;
-                self.stack[frame.base + *slot as usize].put(value);
+                match self.operand(value, frame) {
+                    Ok(scalar) => self.stack[frame.base + *slot as usize].put(scalar),
+                    Err(Other) => self.stack[frame.base + *slot as usize] = self.left()?,
+                }
                 Ok(Scalar::None)
             }
             Code::SetGlobal(slot, value) => {
-                let value = self.fresh(value, frame)?;
-                self.globals[*slot as usize].put(value);
+                match self.operand(value, frame) {
+                    Ok(scalar) => self.globals[*slot as usize].put(scalar),
+                    Err(Other) => self.globals[*slot as usize] = self.left()?,
+                }
                 Ok(Scalar::None)
             }
             Code::For(f) => self.for_(f, frame),
@@ -185,10 +194,7 @@ impl<'p> Machine<'p> {
             Code::And(ab) => Ok((self.condition(&ab.0, frame)? && self.condition(&ab.1, frame)?).into()),
             Code::Or(ab) => Ok((self.condition(&ab.0, frame)? || self.condition(&ab.1, frame)?).into()),
             Code::Not(a) => Ok((!self.condition(a, frame)?).into()),
-            _ => {
-                let outcome = self.rare(node, frame);
-                self.leave(outcome)
-            }
+            _ => self.rare(node, frame),
         }
     }
 
@@ -197,7 +203,7 @@ impl<'p> Machine<'p> {
     pub fn fresh(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Value, Other> {
         match self.scalar(node, frame) {
             Ok(scalar) => Ok(scalar.into()),
-            Err(Other) => self.take().map_err(|stop| self.stop(stop)),
+            Err(Other) => self.left(),
         }
     }
 
@@ -206,7 +212,7 @@ impl<'p> Machine<'p> {
     pub fn run_part(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<(), Other> {
         match self.scalar(node, frame) {
             Ok(_) => Ok(()),
-            Err(Other) => self.take().map(drop).map_err(|stop| self.stop(stop)),
+            Err(Other) => self.left().map(drop),
         }
     }
 
@@ -214,7 +220,7 @@ impl<'p> Machine<'p> {
         let a = match self.operand(&ab.0, frame) {
             Ok(a) => a,
             Err(Other) => {
-                let a = self.take().map_err(|stop| self.stop(stop))?;
+                let a = self.left()?;
                 let b = self.fresh(&ab.1, frame)?;
                 return self.operate(op, &a, &b, span, ab);
             }
@@ -222,7 +228,7 @@ impl<'p> Machine<'p> {
         let b = match self.operand(&ab.1, frame) {
             Ok(b) => b,
             Err(Other) => {
-                let b = self.take().map_err(|stop| self.stop(stop))?;
+                let b = self.left()?;
                 return self.operate(op, &a.into(), &b, span, ab);
             }
         };
@@ -269,7 +275,7 @@ impl<'p> Machine<'p> {
                 }
                 scalar.into()
             }
-            Err(Other) => self.take().map_err(|stop| self.stop(stop))?,
+            Err(Other) => self.left()?,
         };
         let outcome = self.run_word(apply.word, std::slice::from_mut(&mut value), span, &apply.args);
         self.leave(outcome)
@@ -304,12 +310,14 @@ impl<'p> Machine<'p> {
         if value.is_ok() && failed { Err(self.stop(Stop::Reported)) } else { value }
     }
 
+    #[inline(never)]
     fn for_(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Fast {
         let over = self.fresh(&f.over, frame)?;
         let slot = frame.base + f.slot as usize;
         if let Value::Range(range) = over {
             for i in 0..range.len() {
-                self.turn(f, slot, Value::Number(range.from + i as f64), frame)?;
+                self.stack[slot].put(Scalar::Number(range.from + i as f64));
+                self.turn(f, frame)?;
             }
             return Ok(Scalar::None);
         }
@@ -318,16 +326,16 @@ impl<'p> Machine<'p> {
             return Err(self.stop(stop));
         }
         for i in 0..over.length().unwrap_or(0) {
-            self.turn(f, slot, over.item(i).unwrap_or(Value::None), frame)?;
+            self.stack[slot] = over.item(i).unwrap_or(Value::None);
+            self.turn(f, frame)?;
         }
         Ok(Scalar::None)
     }
 
     /// One turn of a loop.
     #[inline]
-    fn turn(&mut self, f: &'p ForCode, slot: usize, item: Value, frame: Frame<'_>) -> Result<(), Other> {
+    fn turn(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Result<(), Other> {
         self.step(f.over.span).map_err(|stop| self.stop(stop))?;
-        self.stack[slot].put(item);
         if let Some(guard) = &f.guard
             && !self.condition(guard, frame)?
         {
@@ -342,7 +350,7 @@ impl<'p> Machine<'p> {
             Ok(Scalar::True) => return Ok(true),
             Ok(Scalar::False) => return Ok(false),
             Ok(scalar) => scalar.into(),
-            Err(Other) => self.take().map_err(|stop| self.stop(stop))?,
+            Err(Other) => self.left()?,
         };
         let stop = self.no_condition(&value, node.span);
         Err(self.stop(stop))
