@@ -4,7 +4,7 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Call, Frame, Machine, word_name};
-use super::scalar::{Fast, Other, Scalar};
+use super::scalar::{Fast, Other};
 use super::suggest::property_meant;
 use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
 use super::word::{Args, Default, Run, Word, described};
@@ -123,26 +123,29 @@ impl<'p> Machine<'p> {
                 _ => return Err(self.stop(Stop::Reported)),
             },
         };
+        let Some(f) = self.program.functions.get(function.0 as usize) else { return Err(self.stop(Stop::Reported)) };
+        // The frame is there before the arguments are, so that each is put where it belongs.
         let base = self.stack.len();
-        for arg in args {
-            // Each kind is made where it stands: see `Value::put`.
-            match arg.as_ref().map(|node| self.operand(node, frame)) {
-                Some(Ok(Scalar::Number(x))) => self.stack.push(Value::Number(x)),
-                Some(Ok(scalar)) => self.stack.push(scalar.into()),
-                Some(Err(Other)) => {
-                    let value = self.left()?;
-                    self.stack.push(value);
-                }
-                None => self.stack.push(Value::Unset),
+        self.stack.extend((0..f.slots).map(|_| Value::Unset));
+        for (i, arg) in args.iter().enumerate() {
+            let Some(node) = arg else { continue };
+            match self.operand(node, frame) {
+                Ok(scalar) => self.stack[base + i].put(scalar),
+                Err(Other) => self.stack[base + i] = self.left()?,
             }
         }
-        self.enter(function, closure.as_ref(), base, span)
+        self.enter(function, f, closure.as_ref(), base, span)
     }
 
-    /// Runs a function whose arguments are on the stack from `base`.
-    fn enter(&mut self, function: FunctionId, closure: Option<&Arc<Closure>>, base: usize, span: Span) -> Fast {
-        let program = self.program;
-        let Some(f) = program.functions.get(function.0 as usize) else { return Err(self.stop(Stop::Reported)) };
+    /// Runs a function whose frame is on the stack from `base`, with its arguments.
+    fn enter(
+        &mut self,
+        function: FunctionId,
+        f: &'p FnCode,
+        closure: Option<&Arc<Closure>>,
+        base: usize,
+        span: Span,
+    ) -> Fast {
         self.step(span).map_err(|stop| self.stop(stop))?;
         self.nesting += f.depth as usize;
         if self.calls.len() >= self.limits.call_depth || self.nesting > self.limits.nesting {
@@ -150,13 +153,12 @@ impl<'p> Machine<'p> {
             return Err(self.stop(stop));
         }
         self.calls.push(Call { function, base, span, frame: None });
-        for _ in self.stack.len()..base + f.slots as usize {
-            self.stack.push(Value::Unset);
-        }
         let frame = Frame { base, closure };
-        for (i, p) in f.params.iter().enumerate() {
-            if let (Some(default), Value::Unset) = (&p.default, &self.stack[base + i]) {
-                self.stack[base + i] = self.fresh(default, frame)?;
+        if f.has_defaults {
+            for (i, p) in f.params.iter().enumerate() {
+                if let (Some(default), Value::Unset) = (&p.default, &self.stack[base + i]) {
+                    self.stack[base + i] = self.fresh(default, frame)?;
+                }
             }
         }
         let value = self.scalar(&f.body, frame);
@@ -276,9 +278,11 @@ impl<'p> Machine<'p> {
         match function {
             Value::Builtin(id) => self.run_word(*id, &mut placed, span, &[]),
             Value::Function(c) => {
+                let Some(f) = program.functions.get(c.function.0 as usize) else { return Err(Stop::Reported) };
                 let base = self.stack.len();
                 self.stack.extend(placed);
-                match self.enter(c.function, Some(c), base, span) {
+                self.stack.resize(base + f.slots as usize, Value::Unset);
+                match self.enter(c.function, f, Some(c), base, span) {
                     Ok(scalar) => Ok(scalar.into()),
                     Err(Other) => self.take(),
                 }

@@ -150,6 +150,8 @@ pub struct FnCode {
     /// `function` where it has none.
     pub name: EcoString,
     pub params: Vec<ParamSlot>,
+    /// Whether a parameter has one.
+    pub has_defaults: bool,
     /// Values that its frame holds.
     pub slots: u32,
     /// Expressions within each other.

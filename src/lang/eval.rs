@@ -4,7 +4,7 @@ use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Frame, Machine};
 use super::ops;
-use super::scalar::Fast;
+use super::scalar::{Fast, Other};
 use super::value::{Closure, Value};
 use super::word::described;
 use crate::diag::Span;
@@ -126,15 +126,11 @@ impl<'p> Machine<'p> {
     }
 
     fn list(&mut self, items: &'p [Node], span: Span, frame: Frame<'_>) -> Outcome {
-        if let [x, y, z] = items {
-            let (x, y, z) = (self.eval(x, frame)?, self.eval(y, frame)?, self.eval(z, frame)?);
-            if let (Value::Number(x), Value::Number(y), Value::Number(z)) = (&x, &y, &z) {
-                return Ok(Value::Vec3([*x, *y, *z]));
-            }
-            for v in [&x, &y, &z] {
-                self.hold(v, span)?;
-            }
-            return Ok(Value::List(EcoVec::from([x, y, z])));
+        if let Some(items) = items.as_array() {
+            return match self.vector(items, span, frame) {
+                Ok(v) => Ok(Value::Vec3(v)),
+                Err(Other) => self.take(),
+            };
         }
         let mut out = EcoVec::with_capacity(items.len());
         for n in items {

@@ -8,6 +8,7 @@ use super::machine::{Frame, Machine};
 use super::ops;
 use super::value::Value;
 use crate::diag::Span;
+use ecow::EcoVec;
 
 /// A value that fits a register.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,7 @@ impl Value {
     /// Puts a scalar in this one's place. A number on a number, by far the most frequent, is one store: to make a value and
     /// copy it would have the copy wait for its parts.
     #[inline(always)]
-    fn put(&mut self, scalar: Scalar) {
+    pub fn put(&mut self, scalar: Scalar) {
         match (&mut *self, scalar) {
             (Value::Number(old), Scalar::Number(new)) => *old = new,
             (_, new) => *self = new.into(),
@@ -128,10 +129,15 @@ impl<'p> Machine<'p> {
     /// As [`scalar`](Machine::scalar), and without a call for the leaves of the tree.
     #[inline(always)]
     pub fn operand(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
-        match &node.code {
-            Code::Local(i) if let Some(s) = self.stack[frame.base + *i as usize].scalar() => Ok(s),
-            Code::Const(v) if let Some(s) = v.scalar() => Ok(s),
-            _ => self.scalar(node, frame),
+        let value = match &node.code {
+            Code::Local(i) => &self.stack[frame.base + *i as usize],
+            Code::Const(v) => v,
+            Code::Binary(op, ab) => return self.binary(*op, ab, node.span, frame),
+            _ => return self.scalar(node, frame),
+        };
+        match value.scalar() {
+            Some(s) => Ok(s),
+            None => self.rare(node, frame),
         }
     }
 
@@ -169,20 +175,8 @@ impl<'p> Machine<'p> {
                 }
                 otherwise.as_ref().map_or(Ok(Scalar::None), |n| self.scalar(n, frame))
             }
-            Code::SetLocal(slot, value) => {
-                match self.operand(value, frame) {
-                    Ok(scalar) => self.stack[frame.base + *slot as usize].put(scalar),
-                    Err(Other) => self.stack[frame.base + *slot as usize] = self.left()?,
-                }
-                Ok(Scalar::None)
-            }
-            Code::SetGlobal(slot, value) => {
-                match self.operand(value, frame) {
-                    Ok(scalar) => self.globals[*slot as usize].put(scalar),
-                    Err(Other) => self.globals[*slot as usize] = self.left()?,
-                }
-                Ok(Scalar::None)
-            }
+            Code::SetLocal(i, value) => self.set(|m| &mut m.stack[frame.base + *i as usize], value, frame),
+            Code::SetGlobal(i, value) => self.set(|m| &mut m.globals[*i as usize], value, frame),
             Code::For(f) => self.for_(f, frame),
             Code::While(w) => {
                 while self.condition(&w.0, frame)? {
@@ -196,6 +190,75 @@ impl<'p> Machine<'p> {
             Code::Not(a) => Ok((!self.condition(a, frame)?).into()),
             _ => self.rare(node, frame),
         }
+    }
+
+    /// Puts a value in a slot.
+    #[inline(always)]
+    fn set(&mut self, slot: impl Fn(&mut Self) -> &mut Value, value: &'p Node, frame: Frame<'_>) -> Fast {
+        if let Code::List(items) = &value.code
+            && let Some(items) = items.as_array()
+        {
+            match self.vector(items, value.span, frame) {
+                Ok(v) => match slot(self) {
+                    Value::Vec3(old) => *old = v,
+                    other => *other = Value::Vec3(v),
+                },
+                Err(Other) => *slot(self) = self.left()?,
+            }
+            return Ok(Scalar::None);
+        }
+        match self.operand(value, frame) {
+            Ok(scalar) => slot(self).put(scalar),
+            Err(Other) => *slot(self) = self.left()?,
+        }
+        Ok(Scalar::None)
+    }
+
+    /// A list of three numbers; one of anything else is left.
+    #[inline(always)]
+    pub fn vector(&mut self, items: &'p [Node; 3], span: Span, frame: Frame<'_>) -> Result<[f64; 3], Other> {
+        let [x, y, z] = items;
+        let x = match self.operand(x, frame) {
+            Ok(Scalar::Number(x)) => x,
+            odd => return Err(self.list_of_three([None, None], odd, items, span, frame)),
+        };
+        let y = match self.operand(y, frame) {
+            Ok(Scalar::Number(y)) => y,
+            odd => return Err(self.list_of_three([Some(x), None], odd, items, span, frame)),
+        };
+        match self.operand(z, frame) {
+            Ok(Scalar::Number(z)) => Ok([x, y, z]),
+            odd => Err(self.list_of_three([Some(x), Some(y)], odd, items, span, frame)),
+        }
+    }
+
+    /// Leaves a list of three values that aren't all numbers: `before` those that are, then `odd`.
+    #[inline(never)]
+    fn list_of_three(
+        &mut self,
+        before: [Option<f64>; 2],
+        odd: Fast,
+        items: &'p [Node; 3],
+        span: Span,
+        frame: Frame<'_>,
+    ) -> Other {
+        let mut values: EcoVec<Value> = before.into_iter().flatten().map(Value::Number).collect();
+        let mut next = odd;
+        loop {
+            match next.map(Value::from).or_else(|Other| self.left()) {
+                Ok(value) => values.push(value),
+                Err(Other) => return Other,
+            }
+            let Some(node) = items.get(values.len()) else { break };
+            next = self.scalar(node, frame);
+        }
+        for v in &values {
+            if let Err(stop) = self.hold(v, span) {
+                return self.stop(stop);
+            }
+        }
+        self.other = Ok(Value::List(values));
+        Other
     }
 
     /// A value; a mistake is left.
@@ -216,6 +279,7 @@ impl<'p> Machine<'p> {
         }
     }
 
+    #[inline(never)]
     fn binary(&mut self, op: Op, ab: &'p (Node, Node), span: Span, frame: Frame<'_>) -> Fast {
         let a = match self.operand(&ab.0, frame) {
             Ok(a) => a,

@@ -141,7 +141,8 @@ impl Resolver {
             .map(|p| ParamSlot { name: p.name.name.clone(), required: p.default.is_none(), default: None })
             .collect();
         let body = Node { code: Code::Failed, span: f.body.span };
-        self.program.functions.push(FnCode { name: name.clone(), params, slots: 0, depth: 1, body });
+        let has_defaults = f.params.iter().any(|p| p.default.is_some());
+        self.program.functions.push(FnCode { name: name.clone(), params, has_defaults, slots: 0, depth: 1, body });
         FunctionId(self.program.functions.len() as u32 - 1)
     }
 
