@@ -12,7 +12,9 @@ pub struct Node {
     pub span: Span,
 }
 
+// The tag has a byte of its own: that is one instruction less, wherever it is looked at.
 #[derive(Debug)]
+#[repr(u8)]
 pub enum Code {
     Const(Value),
     Local(u32),

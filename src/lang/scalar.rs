@@ -22,7 +22,7 @@ pub enum Scalar {
 }
 
 /// Not a [`Scalar`]: what it is stands in the machine, for whoever comes next.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Other;
 
 /// A scalar; anything else is left in the machine.
@@ -283,39 +283,51 @@ impl<'p> Machine<'p> {
     fn binary(&mut self, op: Op, ab: &'p (Node, Node), span: Span, frame: Frame<'_>) -> Fast {
         let a = match self.operand(&ab.0, frame) {
             Ok(a) => a,
-            Err(Other) => {
-                let a = self.left()?;
-                let b = self.fresh(&ab.1, frame)?;
-                return self.operate(op, &a, &b, span, ab);
+            Err(Other) => return self.of_other(op, ab, span, frame),
+        };
+        let b = self.operand(&ab.1, frame);
+        if let (Scalar::Number(x), Ok(Scalar::Number(y))) = (a, b) {
+            let number = match op {
+                Op::Add => x + y,
+                Op::Subtract => x - y,
+                Op::Multiply => x * y,
+                Op::Divide | Op::Remainder => ops::quotient(op, x, y),
+                Op::Less => return Ok((x < y).into()),
+                Op::Greater => return Ok((x > y).into()),
+                _ => f64::NAN,
+            };
+            // What isn't finite is a mistake, or an operator of the long way.
+            if number.is_finite() {
+                return Ok(Scalar::Number(number));
             }
-        };
-        let b = match self.operand(&ab.1, frame) {
-            Ok(b) => b,
-            Err(Other) => {
-                let b = self.left()?;
-                return self.operate(op, &a.into(), &b, span, ab);
-            }
-        };
-        use Scalar::{Angle, Number};
-        // What isn't finite is a mistake, or isn't for this way.
-        let fast = match (op, a, b) {
-            (Op::Add, Number(x), Number(y)) => Number(x + y),
-            (Op::Subtract, Number(x), Number(y)) => Number(x - y),
-            (Op::Multiply, Number(x), Number(y)) => Number(x * y),
-            (Op::Multiply, Number(x), Angle(y)) | (Op::Multiply, Angle(x), Number(y)) => Angle(x * y),
-            (Op::Divide | Op::Remainder, Number(x), Number(y)) if y != 0.0 => Number(ops::quotient(op, x, y)),
-            (Op::Less, Number(x), Number(y)) => return Ok((x < y).into()),
-            (Op::Greater, Number(x), Number(y)) => return Ok((x > y).into()),
-            _ => Number(f64::NAN),
-        };
-        match fast {
-            Number(x) | Angle(x) if x.is_finite() => Ok(fast),
-            _ => self.operate(op, &a.into(), &b.into(), span, ab),
         }
+        self.of_scalar(op, a, b, span, ab)
+    }
+
+    /// An operator on a scalar and any value.
+    #[inline(never)]
+    fn of_scalar(&mut self, op: Op, a: Scalar, b: Fast, span: Span, ab: &'p (Node, Node)) -> Fast {
+        let turned = match (op, a, b) {
+            (Op::Multiply, Scalar::Number(x), Ok(Scalar::Angle(y))) => x * y,
+            (Op::Multiply, Scalar::Angle(x), Ok(Scalar::Number(y))) => x * y,
+            _ => f64::NAN,
+        };
+        if turned.is_finite() {
+            return Ok(Scalar::Angle(turned));
+        }
+        let b = b.map_or_else(|Other| self.left(), |b| Ok(b.into()))?;
+        self.operate(op, &a.into(), &b, span, ab)
+    }
+
+    /// An operator on what was left and what comes next.
+    #[inline(never)]
+    fn of_other(&mut self, op: Op, ab: &'p (Node, Node), span: Span, frame: Frame<'_>) -> Fast {
+        let a = self.left()?;
+        let b = self.fresh(&ab.1, frame)?;
+        self.operate(op, &a, &b, span, ab)
     }
 
     /// An operator on any two values.
-    #[inline(never)]
     fn operate(&mut self, op: Op, a: &Value, b: &Value, span: Span, ab: &'p (Node, Node)) -> Fast {
         let outcome = ops::binary(op, a, b, &mut self.build, span).map_err(|f| {
             let span = if f.argument == Some(1) { ab.1.span } else { span };
