@@ -30,7 +30,7 @@ pub enum Code {
     Text(Box<[TextCode]>),
     Negate(Box<Node>),
     Not(Box<Node>),
-    Binary(Op, Box<(Node, Node)>),
+    Binary(Box<Operation>),
     And(Box<(Node, Node)>),
     Or(Box<(Node, Node)>),
     If {
@@ -84,6 +84,14 @@ pub enum Code {
     /// A module as a record: its exports' slots.
     Module(Box<[(EcoString, u32)]>),
     Param(Box<ParamCode>),
+}
+
+/// An operator and what it takes.
+#[derive(Debug)]
+pub struct Operation {
+    pub op: Op,
+    pub a: Node,
+    pub b: Node,
 }
 
 /// A word that makes a number of one number or angle, and its argument, placed as in a `CallBuiltin`.

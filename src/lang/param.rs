@@ -123,9 +123,11 @@ impl<'p> Machine<'p> {
 
     /// The ends of a range and whether it includes the last; as a value, a range has no unit.
     fn param_ends(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Option<(Value, Value, bool)>, Stop> {
-        if let Code::Binary(op @ (Op::Range | Op::RangeInclusive), ends) = &node.code {
-            let (a, b) = (self.eval(&ends.0, frame)?, self.eval(&ends.1, frame)?);
-            return Ok(Some((a, b, *op == Op::RangeInclusive)));
+        if let Code::Binary(ends) = &node.code
+            && let Op::Range | Op::RangeInclusive = ends.op
+        {
+            let (a, b) = (self.eval(&ends.a, frame)?, self.eval(&ends.b, frame)?);
+            return Ok(Some((a, b, ends.op == Op::RangeInclusive)));
         }
         Ok(match self.eval(node, frame)? {
             Value::Range(r) => Some((Value::Number(r.from), Value::Number(r.to), r.inclusive)),

@@ -51,8 +51,11 @@ impl Value {
     /// As a scalar, where it is one.
     #[inline(always)]
     fn scalar(&self) -> Option<Scalar> {
+        // First of all what it nearly always is.
+        if let Value::Number(x) = self {
+            return Some(Scalar::Number(*x));
+        }
         match self {
-            Value::Number(x) => Some(Scalar::Number(*x)),
             Value::Angle(x) => Some(Scalar::Angle(*x)),
             Value::Bool(b) => Some((*b).into()),
             Value::None => Some(Scalar::None),
@@ -132,7 +135,7 @@ impl<'p> Machine<'p> {
         let value = match &node.code {
             Code::Local(i) => &self.stack[frame.base + *i as usize],
             Code::Const(v) => v,
-            Code::Binary(op, ab) => return self.binary(*op, ab, node.span, frame),
+            Code::Binary(operation) => return self.binary(operation, node, frame),
             _ => return self.scalar(node, frame),
         };
         match value.scalar() {
@@ -152,7 +155,7 @@ impl<'p> Machine<'p> {
                 Some(v) if let Some(s) = v.scalar() => Ok(s),
                 _ => self.rare(node, frame),
             },
-            Code::Binary(op, ab) => self.binary(*op, ab, node.span, frame),
+            Code::Binary(operation) => self.binary(operation, node, frame),
             Code::Field { of, item, .. } => {
                 if let Some(i) = item
                     && let Some(Value::Vec3(v)) = self.slot(of, frame)
@@ -280,18 +283,18 @@ impl<'p> Machine<'p> {
     }
 
     #[inline(never)]
-    fn binary(&mut self, op: Op, ab: &'p (Node, Node), span: Span, frame: Frame<'_>) -> Fast {
-        let a = match self.operand(&ab.0, frame) {
+    fn binary(&mut self, operation: &'p Operation, node: &'p Node, frame: Frame<'_>) -> Fast {
+        let a = match self.operand(&operation.a, frame) {
             Ok(a) => a,
-            Err(Other) => return self.of_other(op, ab, span, frame),
+            Err(Other) => return self.of_other(operation, node, frame),
         };
-        let b = self.operand(&ab.1, frame);
+        let b = self.operand(&operation.b, frame);
         if let (Scalar::Number(x), Ok(Scalar::Number(y))) = (a, b) {
-            let number = match op {
+            let number = match operation.op {
                 Op::Add => x + y,
                 Op::Subtract => x - y,
                 Op::Multiply => x * y,
-                Op::Divide | Op::Remainder => ops::quotient(op, x, y),
+                Op::Divide | Op::Remainder => ops::quotient(operation.op, x, y),
                 Op::Less => return Ok((x < y).into()),
                 Op::Greater => return Ok((x > y).into()),
                 _ => f64::NAN,
@@ -301,36 +304,34 @@ impl<'p> Machine<'p> {
                 return Ok(Scalar::Number(number));
             }
         }
-        self.of_scalar(op, a, b, span, ab)
+        self.of_scalar(operation, a, b, node)
     }
 
     /// An operator on a scalar and any value.
     #[inline(never)]
-    fn of_scalar(&mut self, op: Op, a: Scalar, b: Fast, span: Span, ab: &'p (Node, Node)) -> Fast {
-        let turned = match (op, a, b) {
-            (Op::Multiply, Scalar::Number(x), Ok(Scalar::Angle(y))) => x * y,
-            (Op::Multiply, Scalar::Angle(x), Ok(Scalar::Number(y))) => x * y,
-            _ => f64::NAN,
-        };
-        if turned.is_finite() {
-            return Ok(Scalar::Angle(turned));
+    fn of_scalar(&mut self, operation: &'p Operation, a: Scalar, b: Fast, node: &Node) -> Fast {
+        if let (Op::Multiply, Scalar::Number(x), Ok(Scalar::Angle(y)))
+        | (Op::Multiply, Scalar::Angle(x), Ok(Scalar::Number(y))) = (operation.op, a, b)
+            && (x * y).is_finite()
+        {
+            return Ok(Scalar::Angle(x * y));
         }
         let b = b.map_or_else(|Other| self.left(), |b| Ok(b.into()))?;
-        self.operate(op, &a.into(), &b, span, ab)
+        self.operate(operation, &a.into(), &b, node)
     }
 
     /// An operator on what was left and what comes next.
     #[inline(never)]
-    fn of_other(&mut self, op: Op, ab: &'p (Node, Node), span: Span, frame: Frame<'_>) -> Fast {
+    fn of_other(&mut self, operation: &'p Operation, node: &Node, frame: Frame<'_>) -> Fast {
         let a = self.left()?;
-        let b = self.fresh(&ab.1, frame)?;
-        self.operate(op, &a, &b, span, ab)
+        let b = self.fresh(&operation.b, frame)?;
+        self.operate(operation, &a, &b, node)
     }
 
     /// An operator on any two values.
-    fn operate(&mut self, op: Op, a: &Value, b: &Value, span: Span, ab: &'p (Node, Node)) -> Fast {
-        let outcome = ops::binary(op, a, b, &mut self.build, span).map_err(|f| {
-            let span = if f.argument == Some(1) { ab.1.span } else { span };
+    fn operate(&mut self, operation: &'p Operation, a: &Value, b: &Value, node: &Node) -> Fast {
+        let outcome = ops::binary(operation.op, a, b, &mut self.build, node.span).map_err(|f| {
+            let span = if f.argument == Some(1) { operation.b.span } else { node.span };
             self.fail(f, span)
         });
         self.leave(outcome)

@@ -58,7 +58,10 @@ impl Resolver {
             ExprKind::Not(a) => Code::Not(self.boxed(a)),
             ExprKind::Binary { op: Op::And, a, b, .. } => Code::And(self.pair(a, b)),
             ExprKind::Binary { op: Op::Or, a, b, .. } => Code::Or(self.pair(a, b)),
-            ExprKind::Binary { op, a, b, .. } => Code::Binary(*op, self.pair(a, b)),
+            ExprKind::Binary { op, a, b, .. } => {
+                let (a, b) = *self.pair(a, b);
+                Code::Binary(Box::new(Operation { op: *op, a, b }))
+            }
             ExprKind::Index { of, index } => Code::Index(self.pair(of, index)),
             ExprKind::Field { of, field } => self.field(of, field),
             ExprKind::Call { callee, args } => self.call(callee, args, mode),

@@ -216,7 +216,8 @@ impl Resolver {
         let value = match op {
             Some(op) => {
                 let span = op_span.to(value.span);
-                Node { code: Code::Binary(op, Box::new((read, value))), span: Span { start: name.span.start, ..span } }
+                let operation = Operation { op, a: read, b: value };
+                Node { code: Code::Binary(Box::new(operation)), span: Span { start: name.span.start, ..span } }
             }
             None => value,
         };
