@@ -51,11 +51,8 @@ impl Value {
     /// As a scalar, where it is one.
     #[inline(always)]
     fn scalar(&self) -> Option<Scalar> {
-        // First of all what it nearly always is.
-        if let Value::Number(x) = self {
-            return Some(Scalar::Number(*x));
-        }
         match self {
+            Value::Number(x) => Some(Scalar::Number(*x)),
             Value::Angle(x) => Some(Scalar::Angle(*x)),
             Value::Bool(b) => Some((*b).into()),
             Value::None => Some(Scalar::None),
@@ -138,9 +135,9 @@ impl<'p> Machine<'p> {
             Code::Binary(operation) => return self.binary(operation, node, frame),
             _ => return self.scalar(node, frame),
         };
-        match value.scalar() {
-            Some(s) => Ok(s),
-            None => self.rare(node, frame),
+        match value {
+            Value::Number(x) => Ok(Scalar::Number(*x)),
+            _ => self.scalar(node, frame),
         }
     }
 
