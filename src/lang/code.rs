@@ -1,6 +1,7 @@
 //! The program as it is run: names have become slots, arguments stand in the order of the parameters.
 
 use super::ast::Op;
+use super::formula::Formula;
 use super::value::{BuiltinId, FunctionId, Value};
 use crate::diag::Span;
 use ecow::EcoString;
@@ -54,6 +55,8 @@ pub enum Code {
         word: BuiltinId,
         args: Box<[(u16, Node)]>,
     },
+    /// Arithmetic of numbers.
+    Formula(Box<Formula>),
     Apply(Box<Apply>),
     /// A function known beforehand: one argument a parameter. `callee` is its value, where it carries captures.
     Call {
@@ -98,13 +101,13 @@ pub struct Operation {
 #[derive(Debug)]
 pub struct Apply {
     pub word: BuiltinId,
-    pub formula: Formula,
+    pub function: Function1,
     pub args: [(u16, Node); 1],
 }
 
 /// What such a word computes.
 #[derive(Clone, Copy, Debug)]
-pub enum Formula {
+pub enum Function1 {
     OfNumber(fn(f64) -> f64),
     /// In degrees.
     OfAngle(fn(f64) -> f64),

@@ -16,6 +16,7 @@ mod eval;
 mod expected;
 mod fault;
 mod finish;
+mod formula;
 pub mod highlight;
 mod limits;
 mod load;

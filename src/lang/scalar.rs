@@ -48,6 +48,12 @@ impl From<Scalar> for Value {
 }
 
 impl Value {
+    /// Its number.
+    #[inline(always)]
+    pub fn number(&self) -> Option<f64> {
+        if let Value::Number(x) = self { Some(*x) } else { None }
+    }
+
     /// As a scalar, where it is one.
     #[inline(always)]
     fn scalar(&self) -> Option<Scalar> {
@@ -132,6 +138,10 @@ impl<'p> Machine<'p> {
         let value = match &node.code {
             Code::Local(i) => &self.stack[frame.base + *i as usize],
             Code::Const(v) => v,
+            Code::Formula(f) => match self.formula(f, frame) {
+                Some(s) => return Ok(s),
+                None => return self.scalar(&f.tree, frame),
+            },
             Code::Binary(operation) => return self.binary(operation, node, frame),
             _ => return self.scalar(node, frame),
         };
@@ -151,6 +161,10 @@ impl<'p> Machine<'p> {
             Code::Local(_) | Code::Global(_) | Code::Capture(_) => match self.slot(node, frame) {
                 Some(v) if let Some(s) = v.scalar() => Ok(s),
                 _ => self.rare(node, frame),
+            },
+            Code::Formula(f) => match self.formula(f, frame) {
+                Some(s) => Ok(s),
+                None => self.scalar(&f.tree, frame),
             },
             Code::Binary(operation) => self.binary(operation, node, frame),
             Code::Field { of, item, .. } => {
@@ -339,9 +353,9 @@ impl<'p> Machine<'p> {
         let [(_, of)] = &apply.args;
         let mut value = match self.operand(of, frame) {
             Ok(scalar) => {
-                let y = match (scalar, apply.formula) {
-                    (Scalar::Number(x), Formula::OfNumber(f)) => f(x),
-                    (Scalar::Angle(x), Formula::OfAngle(f)) => f(x + 0.0), // -0 is 0
+                let y = match (scalar, apply.function) {
+                    (Scalar::Number(x), Function1::OfNumber(f)) => f(x),
+                    (Scalar::Angle(x), Function1::OfAngle(f)) => f(x + 0.0), // -0 is 0
                     _ => f64::NAN,
                 };
                 if y.is_finite() {

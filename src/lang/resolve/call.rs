@@ -135,13 +135,13 @@ impl Resolver {
             return Code::Failed;
         }
         let Some(args) = self.align_builtin(id, args, span) else { return Code::Failed };
-        let formula = match word.run {
-            Run::Number(f) => Formula::OfNumber(f),
-            Run::Angle(f) => Formula::OfAngle(f),
+        let function = match word.run {
+            Run::Number(f) => Function1::OfNumber(f),
+            Run::Angle(f) => Function1::OfAngle(f),
             _ => return Code::CallBuiltin { word: id, args },
         };
         match <Box<[_; 1]>>::try_from(args) {
-            Ok(args) => Code::Apply(Box::new(Apply { word: id, formula, args: *args })),
+            Ok(args) => Code::Apply(Box::new(Apply { word: id, function, args: *args })),
             Err(args) => Code::CallBuiltin { word: id, args },
         }
     }

@@ -6,6 +6,7 @@ use crate::lang::ast::*;
 use crate::lang::call::NAMELESS;
 use crate::lang::catalog;
 use crate::lang::code::*;
+use crate::lang::formula::with_formula;
 use crate::lang::scope::Kind;
 use crate::lang::value::Value;
 use ecow::EcoString;
@@ -21,7 +22,7 @@ impl Resolver {
             ExprKind::Block(b) => return self.block(b, mode),
             _ => {}
         }
-        let value = node(self.value(e, mode));
+        let value = with_formula(node(self.value(e, mode)));
         match mode {
             Mode::Value => value,
             Mode::Scene => node(Code::Emit(Box::new(value))),
