@@ -24,7 +24,12 @@ pub struct Formula {
 enum Step {
     /// Keeps the number at hand for later and goes on with another.
     Take(Source),
-    /// The number at hand, an operator, and a further number.
+    /// The number at hand and a further number.
+    Add(Source),
+    Subtract(Source),
+    Multiply(Source),
+    Divide(Source),
+    /// Another operator.
     With(Op, Source),
     /// The number kept last, an operator, and the one at hand.
     Join(Op),
@@ -38,6 +43,12 @@ enum Step {
 enum Source {
     Constant(f64),
     Local(u32),
+    Rarer(Rarer),
+}
+
+/// With it, a [`Source`] has so few cases that no table of jumps is made of them.
+#[derive(Clone, Copy, Debug)]
+enum Rarer {
     Global(u32),
     /// An item of a vector.
     Item(u32, u8),
@@ -83,9 +94,9 @@ fn part(node: &Node) -> Option<Part> {
         Code::Const(Value::Number(x)) => (Source::Constant(*x), false),
         Code::Const(Value::Angle(x)) => (Source::Constant(*x), true),
         Code::Local(i) => (Source::Local(*i), false),
-        Code::Global(i) => (Source::Global(*i), false),
+        Code::Global(i) => (Source::Rarer(Rarer::Global(*i)), false),
         Code::Field { of, item: Some(item), .. } => match of.code {
-            Code::Local(i) => (Source::Item(i, *item), false),
+            Code::Local(i) => (Source::Rarer(Rarer::Item(i, *item)), false),
             _ => return None,
         },
         _ => return None,
@@ -103,7 +114,13 @@ fn operation(o: &Operation) -> Option<Part> {
         _ => return None,
     };
     match b.steps[..] {
-        [Step::Take(source)] => a.steps.push(Step::With(o.op, source)),
+        [Step::Take(source)] => a.steps.push(match o.op {
+            Op::Add => Step::Add(source),
+            Op::Subtract => Step::Subtract(source),
+            Op::Multiply => Step::Multiply(source),
+            Op::Divide => Step::Divide(source),
+            op => Step::With(op, source),
+        }),
         _ => {
             a.steps.extend(b.steps);
             a.steps.push(Step::Join(o.op));
@@ -147,6 +164,7 @@ impl Machine<'_> {
     }
 
     fn number_of(&self, steps: &[Step], frame: Frame<'_>) -> Option<f64> {
+        let (locals, globals) = (self.stack.get(frame.base..)?, &self.globals[..]);
         let mut kept = [0.0; KEPT];
         let (mut depth, mut x) = (0, 0.0);
         for step in steps {
@@ -154,9 +172,13 @@ impl Machine<'_> {
                 Step::Take(source) => {
                     *kept.get_mut(depth)? = x;
                     depth += 1;
-                    self.source(source, frame)?
+                    source.read(locals, globals)?
                 }
-                Step::With(op, source) => compute(*op, x, self.source(source, frame)?),
+                Step::Add(source) => x + source.read(locals, globals)?,
+                Step::Subtract(source) => x - source.read(locals, globals)?,
+                Step::Multiply(source) => x * source.read(locals, globals)?,
+                Step::Divide(source) => x / source.read(locals, globals)?,
+                Step::With(op, source) => compute(*op, x, source.read(locals, globals)?),
                 Step::Join(op) => {
                     depth -= 1;
                     compute(*op, *kept.get(depth)?, x)
@@ -171,15 +193,17 @@ impl Machine<'_> {
         }
         Some(x)
     }
+}
 
+impl Source {
     #[inline(always)]
-    fn source(&self, source: &Source, frame: Frame<'_>) -> Option<f64> {
-        match source {
-            Source::Constant(x) => Some(*x),
-            Source::Local(i) => self.stack.get(frame.base + *i as usize)?.number(),
-            Source::Global(i) => self.globals.get(*i as usize)?.number(),
-            Source::Item(i, item) => match self.stack.get(frame.base + *i as usize)? {
-                Value::Vec3(v) => v.get(usize::from(*item)).copied(),
+    fn read(self, locals: &[Value], globals: &[Value]) -> Option<f64> {
+        match self {
+            Source::Constant(x) => Some(x),
+            Source::Local(i) => locals.get(i as usize)?.number(),
+            Source::Rarer(Rarer::Global(i)) => globals.get(i as usize)?.number(),
+            Source::Rarer(Rarer::Item(i, item)) => match locals.get(i as usize)? {
+                Value::Vec3(v) => v.get(usize::from(item)).copied(),
                 _ => None,
             },
         }
