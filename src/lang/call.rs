@@ -17,9 +17,9 @@ pub const NAMELESS: &str = "function";
 /// Words with more parameters keep their arguments on the heap.
 const FEW: usize = 4;
 
-impl<'p> Machine<'p> {
+impl Machine<'_> {
     /// A built-in word, its arguments placed already.
-    pub fn call_builtin(&mut self, id: BuiltinId, args: &'p [(u16, Node)], span: Span, frame: Frame<'_>) -> Outcome {
+    pub fn call_builtin(&mut self, id: BuiltinId, args: &[(u16, Node)], span: Span, frame: Frame<'_>) -> Outcome {
         let word = catalog::word(id);
         let most = args.last().map_or(0, |(i, _)| usize::from(*i) + 1);
         let count = args.iter().map(|(i, _)| usize::from(*i) + 1).max().unwrap_or(most).max(word.params.len());
@@ -35,7 +35,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Evaluates arguments; mistakes in several of them are all reported.
-    fn arguments(&mut self, values: &mut [Value], args: &'p [(u16, Node)], frame: Frame<'_>) -> Result<(), Stop> {
+    fn arguments(&mut self, values: &mut [Value], args: &[(u16, Node)], frame: Frame<'_>) -> Result<(), Stop> {
         let mut failed = false;
         for (i, node) in args {
             match self.attempt(node, frame)? {
@@ -111,8 +111,8 @@ impl<'p> Machine<'p> {
     pub fn call_known(
         &mut self,
         function: FunctionId,
-        callee: Option<&'p Node>,
-        args: &'p [Option<Node>],
+        callee: Option<&Node>,
+        args: &[Option<Node>],
         span: Span,
         frame: Frame<'_>,
     ) -> Fast {
@@ -141,7 +141,7 @@ impl<'p> Machine<'p> {
     fn enter(
         &mut self,
         function: FunctionId,
-        f: &'p FnCode,
+        f: &FnCode,
         closure: Option<&Arc<Closure>>,
         base: usize,
         span: Span,
@@ -185,7 +185,7 @@ impl<'p> Machine<'p> {
         function: &Value,
         callee: Span,
         hides: Option<Span>,
-        args: &'p [ArgCode],
+        args: &[ArgCode],
         span: Span,
         frame: Frame<'_>,
     ) -> Outcome {
@@ -212,7 +212,7 @@ impl<'p> Machine<'p> {
         function: &Value,
         values: Vec<(Option<EcoString>, Value)>,
         span: Span,
-        args: &'p [ArgCode],
+        args: &[ArgCode],
     ) -> Outcome {
         let program = self.program;
         let (params, rest): (Vec<(&str, bool, bool)>, bool) = match function {

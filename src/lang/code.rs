@@ -2,9 +2,11 @@
 
 use super::ast::Op;
 use super::formula::Formula;
+use super::parse::Parsed;
 use super::value::{BuiltinId, FunctionId, Value};
-use crate::diag::Span;
+use crate::diag::{FileId, Span};
 use ecow::EcoString;
+use std::sync::Arc;
 
 /// A piece of program and its text.
 #[derive(Debug)]
@@ -193,6 +195,11 @@ pub struct TopStatement {
 /// A file.
 #[derive(Debug)]
 pub struct ModuleCode {
+    pub file: FileId,
+    /// With the statements that are like others.
+    pub parsed: Arc<Parsed>,
+    /// Which of `statements` its templates are, where others can be run as copies of them.
+    pub templates: Vec<Option<usize>>,
     pub statements: Vec<TopStatement>,
     pub slots: u32,
     /// Functions of the top level and their slots: there before anything runs.

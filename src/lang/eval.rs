@@ -11,15 +11,15 @@ use crate::diag::Span;
 use ecow::{EcoString, EcoVec};
 use std::sync::Arc;
 
-impl<'p> Machine<'p> {
+impl Machine<'_> {
     /// What isn't for the fast way.
     #[inline(never)]
-    pub fn rare(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+    pub fn rare(&mut self, node: &Node, frame: Frame<'_>) -> Fast {
         let outcome = self.any(node, frame);
         self.leave(outcome)
     }
 
-    fn any(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
+    fn any(&mut self, node: &Node, frame: Frame<'_>) -> Outcome {
         let span = node.span;
         match &node.code {
             Code::Const(v) => Ok(v.clone()),
@@ -109,7 +109,7 @@ impl<'p> Machine<'p> {
 
     /// Evaluates what others don't depend on: a mistake is reported and the state is as before, so that others are found too.
     /// `None` where there was one.
-    pub fn attempt(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Option<Value>, Stop> {
+    pub fn attempt(&mut self, node: &Node, frame: Frame<'_>) -> Result<Option<Value>, Stop> {
         let before = (self.stack.len(), self.calls.len(), self.nesting, self.collected.len(), self.lists.len());
         match self.eval(node, frame) {
             Ok(value) => return Ok(Some(value)),
@@ -125,7 +125,7 @@ impl<'p> Machine<'p> {
         Ok(None)
     }
 
-    fn list(&mut self, items: &'p [Node], span: Span, frame: Frame<'_>) -> Outcome {
+    fn list(&mut self, items: &[Node], span: Span, frame: Frame<'_>) -> Outcome {
         if let Some(items) = items.as_array() {
             return match self.vector(items, span, frame) {
                 Ok(v) => Ok(Value::Vec3(v)),
@@ -166,7 +166,7 @@ impl<'p> Machine<'p> {
         self.fail(fault, span)
     }
 
-    fn text(&mut self, parts: &'p [TextCode], span: Span, frame: Frame<'_>) -> Outcome {
+    fn text(&mut self, parts: &[TextCode], span: Span, frame: Frame<'_>) -> Outcome {
         let mut out = EcoString::new();
         let most = self.limits.text_length;
         for p in parts {

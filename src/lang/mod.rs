@@ -29,6 +29,7 @@ mod parse;
 mod picture;
 mod property;
 mod reference;
+mod repeat;
 pub mod request;
 mod resolve;
 mod running;
@@ -149,7 +150,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
     let mut resolver = Resolver::default();
     let last = loader.modules.len().saturating_sub(1);
     for (i, m) in loader.modules.iter().enumerate() {
-        resolver.file(&m.parsed.statements, &m.imports, i == last, cancel);
+        resolver.file(m, &loader.sources.get(m.file).text, i == last, cancel);
     }
     let nodes = set_nodes(request, &mut loader.sources, &mut resolver);
     errors.append(&mut resolver.errors);

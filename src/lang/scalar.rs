@@ -77,10 +77,10 @@ impl Value {
     }
 }
 
-impl<'p> Machine<'p> {
+impl Machine<'_> {
     /// The value of a piece of program.
     #[inline]
-    pub fn eval(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
+    pub fn eval(&mut self, node: &Node, frame: Frame<'_>) -> Outcome {
         match self.scalar(node, frame) {
             Ok(scalar) => Ok(scalar.into()),
             Err(Other) => self.take(),
@@ -134,7 +134,7 @@ impl<'p> Machine<'p> {
 
     /// As [`scalar`](Machine::scalar), and without a call for the leaves of the tree.
     #[inline(always)]
-    pub fn operand(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+    pub fn operand(&mut self, node: &Node, frame: Frame<'_>) -> Fast {
         let value = match &node.code {
             Code::Local(i) => &self.stack[frame.base + *i as usize],
             Code::Const(v) => v,
@@ -152,7 +152,7 @@ impl<'p> Machine<'p> {
     }
 
     /// The value of a piece of program.
-    pub fn scalar(&mut self, node: &'p Node, frame: Frame<'_>) -> Fast {
+    pub fn scalar(&mut self, node: &Node, frame: Frame<'_>) -> Fast {
         match &node.code {
             Code::Const(v) => match v.scalar() {
                 Some(s) => Ok(s),
@@ -208,7 +208,7 @@ impl<'p> Machine<'p> {
 
     /// Puts a value in a slot.
     #[inline(always)]
-    fn set(&mut self, slot: impl Fn(&mut Self) -> &mut Value, value: &'p Node, frame: Frame<'_>) -> Fast {
+    fn set(&mut self, slot: impl Fn(&mut Self) -> &mut Value, value: &Node, frame: Frame<'_>) -> Fast {
         if let Code::List(items) = &value.code
             && let Some(items) = items.as_array()
         {
@@ -230,7 +230,7 @@ impl<'p> Machine<'p> {
 
     /// A list of three numbers; one of anything else is left.
     #[inline(always)]
-    pub fn vector(&mut self, items: &'p [Node; 3], span: Span, frame: Frame<'_>) -> Result<[f64; 3], Other> {
+    pub fn vector(&mut self, items: &[Node; 3], span: Span, frame: Frame<'_>) -> Result<[f64; 3], Other> {
         let [x, y, z] = items;
         let x = match self.operand(x, frame) {
             Ok(Scalar::Number(x)) => x,
@@ -252,7 +252,7 @@ impl<'p> Machine<'p> {
         &mut self,
         before: [Option<f64>; 2],
         odd: Fast,
-        items: &'p [Node; 3],
+        items: &[Node; 3],
         span: Span,
         frame: Frame<'_>,
     ) -> Other {
@@ -277,7 +277,7 @@ impl<'p> Machine<'p> {
 
     /// A value; a mistake is left.
     #[inline]
-    pub fn fresh(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Value, Other> {
+    pub fn fresh(&mut self, node: &Node, frame: Frame<'_>) -> Result<Value, Other> {
         match self.scalar(node, frame) {
             Ok(scalar) => Ok(scalar.into()),
             Err(Other) => self.left(),
@@ -286,7 +286,7 @@ impl<'p> Machine<'p> {
 
     /// Runs what has no value, or one that isn't asked for; a mistake is left.
     #[inline]
-    pub fn run_part(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<(), Other> {
+    pub fn run_part(&mut self, node: &Node, frame: Frame<'_>) -> Result<(), Other> {
         match self.scalar(node, frame) {
             Ok(_) => Ok(()),
             Err(Other) => self.left().map(drop),
@@ -294,7 +294,7 @@ impl<'p> Machine<'p> {
     }
 
     #[inline(never)]
-    fn binary(&mut self, operation: &'p Operation, node: &'p Node, frame: Frame<'_>) -> Fast {
+    fn binary(&mut self, operation: &Operation, node: &Node, frame: Frame<'_>) -> Fast {
         let a = match self.operand(&operation.a, frame) {
             Ok(a) => a,
             Err(Other) => return self.of_other(operation, node, frame),
@@ -320,7 +320,7 @@ impl<'p> Machine<'p> {
 
     /// An operator on a scalar and any value.
     #[inline(never)]
-    fn of_scalar(&mut self, operation: &'p Operation, a: Scalar, b: Fast, node: &Node) -> Fast {
+    fn of_scalar(&mut self, operation: &Operation, a: Scalar, b: Fast, node: &Node) -> Fast {
         if let (Op::Multiply, Scalar::Number(x), Ok(Scalar::Angle(y)))
         | (Op::Multiply, Scalar::Angle(x), Ok(Scalar::Number(y))) = (operation.op, a, b)
             && (x * y).is_finite()
@@ -333,14 +333,14 @@ impl<'p> Machine<'p> {
 
     /// An operator on what was left and what comes next.
     #[inline(never)]
-    fn of_other(&mut self, operation: &'p Operation, node: &Node, frame: Frame<'_>) -> Fast {
+    fn of_other(&mut self, operation: &Operation, node: &Node, frame: Frame<'_>) -> Fast {
         let a = self.left()?;
         let b = self.fresh(&operation.b, frame)?;
         self.operate(operation, &a, &b, node)
     }
 
     /// An operator on any two values.
-    fn operate(&mut self, operation: &'p Operation, a: &Value, b: &Value, node: &Node) -> Fast {
+    fn operate(&mut self, operation: &Operation, a: &Value, b: &Value, node: &Node) -> Fast {
         let outcome = ops::binary(operation.op, a, b, &mut self.build, node.span).map_err(|f| {
             let span = if f.argument == Some(1) { operation.b.span } else { node.span };
             self.fail(f, span)
@@ -349,7 +349,7 @@ impl<'p> Machine<'p> {
     }
 
     /// A word that makes a number of one number or angle.
-    fn apply(&mut self, apply: &'p Apply, span: Span, frame: Frame<'_>) -> Fast {
+    fn apply(&mut self, apply: &Apply, span: Span, frame: Frame<'_>) -> Fast {
         let [(_, of)] = &apply.args;
         let mut value = match self.operand(of, frame) {
             Ok(scalar) => {
@@ -371,7 +371,7 @@ impl<'p> Machine<'p> {
 
     /// The value of the last one. What is only added to the scene is independent of what comes after: a mistake in it
     /// doesn't hide theirs.
-    fn block(&mut self, nodes: &'p [Node], frame: Frame<'_>) -> Fast {
+    fn block(&mut self, nodes: &[Node], frame: Frame<'_>) -> Fast {
         let Some((last, before)) = nodes.split_last() else { return Ok(Scalar::None) };
         let mut failed = false;
         for n in before {
@@ -399,7 +399,7 @@ impl<'p> Machine<'p> {
     }
 
     #[inline(never)]
-    fn for_(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Fast {
+    fn for_(&mut self, f: &ForCode, frame: Frame<'_>) -> Fast {
         let over = self.fresh(&f.over, frame)?;
         let slot = frame.base + f.slot as usize;
         if let Value::Range(range) = over {
@@ -422,7 +422,7 @@ impl<'p> Machine<'p> {
 
     /// One turn of a loop.
     #[inline]
-    fn turn(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Result<(), Other> {
+    fn turn(&mut self, f: &ForCode, frame: Frame<'_>) -> Result<(), Other> {
         self.step(f.over.span).map_err(|stop| self.stop(stop))?;
         if let Some(guard) = &f.guard
             && !self.condition(guard, frame)?
@@ -433,7 +433,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Whether a condition holds.
-    fn condition(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<bool, Other> {
+    fn condition(&mut self, node: &Node, frame: Frame<'_>) -> Result<bool, Other> {
         let value = match self.operand(node, frame) {
             Ok(Scalar::True) => return Ok(true),
             Ok(Scalar::False) => return Ok(false),
