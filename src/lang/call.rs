@@ -38,10 +38,7 @@ impl Machine<'_> {
     fn arguments(&mut self, values: &mut [Value], args: &[(u16, Node)], frame: Frame<'_>) -> Result<(), Stop> {
         let mut failed = false;
         for (i, node) in args {
-            match self.attempt(node, frame)? {
-                Some(value) => values[usize::from(*i)] = value,
-                None => failed = true,
-            }
+            failed |= !self.attempt(node, frame, |_, made| values[usize::from(*i)].put(made))?;
         }
         if failed { Err(Stop::Reported) } else { Ok(()) }
     }
@@ -129,10 +126,7 @@ impl Machine<'_> {
         self.stack.extend((0..f.slots).map(|_| Value::Unset));
         for (i, arg) in args.iter().enumerate() {
             let Some(node) = arg else { continue };
-            match self.operand(node, frame) {
-                Ok(scalar) => self.stack[base + i].put(scalar),
-                Err(Other) => self.stack[base + i] = self.left()?,
-            }
+            self.eval_into(node, frame, |m, made| m.stack[base + i].put(made))?;
         }
         self.enter(function, f, closure.as_ref(), base, span)
     }

@@ -98,7 +98,7 @@ impl Machine<'_> {
         let children = self.collected.pop().unwrap_or_default();
         let [material, name] = values;
         let material = if let Value::Material(id) = material { Some(id) } else { None };
-        let name = if let Value::Text(t) = name { Some(t.to_string()) } else { None };
+        let name = if let Value::Text(t) = name { Some(t.as_str().into()) } else { None };
         self.here = span;
         let place = super::word::Host::place(self);
         self.build.node(NodeKind::Group(children), material, name, place).map_err(|f| self.fail(f, span))

@@ -4,7 +4,7 @@ use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Frame, Machine};
 use super::ops;
-use super::scalar::{Fast, Other};
+use super::scalar::{Fast, Made, Other};
 use super::value::{Closure, Value};
 use super::word::described;
 use crate::diag::Span;
@@ -108,13 +108,21 @@ impl Machine<'_> {
     }
 
     /// Evaluates what others don't depend on: a mistake is reported and the state is as before, so that others are found too.
-    /// `None` where there was one.
-    pub fn attempt(&mut self, node: &Node, frame: Frame<'_>) -> Result<Option<Value>, Stop> {
+    /// False where there was one; else `put` is given the value.
+    #[inline]
+    pub fn attempt(
+        &mut self,
+        node: &Node,
+        frame: Frame<'_>,
+        put: impl FnOnce(&mut Self, Made),
+    ) -> Result<bool, Stop> {
         let before = (self.stack.len(), self.calls.len(), self.nesting, self.collected.len(), self.lists.len());
-        match self.eval(node, frame) {
-            Ok(value) => return Ok(Some(value)),
+        if let Ok(()) = self.eval_into(node, frame, put) {
+            return Ok(true);
+        }
+        match self.take() {
             Err(Stop::Error(d)) if self.errors.len() <= self.limits.errors => self.errors.push(*d),
-            Err(Stop::Reported) => {}
+            Ok(_) | Err(Stop::Reported) => {}
             Err(stop) => return Err(stop),
         }
         self.stack.truncate(before.0);
@@ -122,7 +130,7 @@ impl Machine<'_> {
         self.nesting = before.2;
         self.collected.truncate(before.3);
         self.lists.truncate(before.4);
-        Ok(None)
+        Ok(false)
     }
 
     fn list(&mut self, items: &[Node], span: Span, frame: Frame<'_>) -> Outcome {

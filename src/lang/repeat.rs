@@ -50,7 +50,7 @@ impl<'m> Repeats<'m> {
             };
             let text = self.text.get(like.start as usize..like.end as usize)?;
             numbers(text, &mut self.numbers)?;
-            let change = Change { old: &copy.numbers, new: &self.numbers, from: copy.start, to: like.start };
+            let change = Change { old: &copy.numbers, new: &self.numbers, text, from: copy.start, to: like.start };
             change.apply(&mut copy.node, &original.node);
             return self.copies.get(template)?.as_ref().map(|copy| &copy.node);
         }
@@ -64,9 +64,10 @@ pub fn can_be_copied(node: &Node, text: &str) -> bool {
 
 fn copy_of(template: &Node, text: &str) -> Option<Copy> {
     let mut old = Vec::new();
-    numbers(text.get(template.span.range())?, &mut old)?;
+    let text = text.get(template.span.range())?;
+    numbers(text, &mut old)?;
     let (mut node, start) = (copied(template)?, template.span.start);
-    let change = Change { old: &old, new: &old, from: start, to: start };
+    let change = Change { old: &old, new: &old, text, from: start, to: start };
     // Every number must be a constant of its own in the code.
     (change.apply(&mut node, template) == old.len()).then_some(Copy { node, numbers: old, start })
 }
@@ -102,6 +103,8 @@ fn copied(node: &Node) -> Option<Node> {
 struct Change<'a> {
     old: &'a [Number],
     new: &'a [Number],
+    /// Of the new one.
+    text: &'a str,
     /// Where the statements start in the file.
     from: u32,
     to: u32,
@@ -116,7 +119,7 @@ impl Change<'_> {
                 let (start, end) = (original.span.start - self.from, original.span.end - self.from);
                 let Some(k) = self.old.iter().position(|n| (n.start, n.end) == (start, end)) else { return 0 };
                 let Some(new) = self.new.get(k) else { return 0 };
-                *value = Value::Number(new.value);
+                *value = Value::Number(new.value(self.text));
                 1
             }
             (Code::List(copy), Code::List(original)) => self.apply_all(copy.iter_mut(), original.iter()),

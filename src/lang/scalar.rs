@@ -21,6 +21,13 @@ pub enum Scalar {
     Angle(f64),
 }
 
+/// A value on its way to where it belongs.
+pub enum Made {
+    Scalar(Scalar),
+    Vector([f64; 3]),
+    Other(Value),
+}
+
 /// Not a [`Scalar`]: what it is stands in the machine, for whoever comes next.
 #[derive(Clone, Copy, Debug)]
 pub struct Other;
@@ -66,13 +73,16 @@ impl Value {
         }
     }
 
-    /// Puts a scalar in this one's place. A number on a number, by far the most frequent, is one store: to make a value and
-    /// copy it would have the copy wait for its parts.
+    /// Puts what was made in this one's place. A number on a number, by far the most frequent, is one store: to make a value
+    /// and copy it would have the copy wait for its parts.
     #[inline(always)]
-    pub fn put(&mut self, scalar: Scalar) {
-        match (&mut *self, scalar) {
-            (Value::Number(old), Scalar::Number(new)) => *old = new,
-            (_, new) => *self = new.into(),
+    pub fn put(&mut self, made: Made) {
+        match (&mut *self, made) {
+            (Value::Number(old), Made::Scalar(Scalar::Number(new))) => *old = new,
+            (Value::Vec3(old), Made::Vector(new)) => *old = new,
+            (_, Made::Scalar(new)) => *self = new.into(),
+            (_, Made::Vector(new)) => *self = Value::Vec3(new),
+            (_, Made::Other(new)) => *self = new,
         }
     }
 }
@@ -189,8 +199,14 @@ impl Machine<'_> {
                 }
                 otherwise.as_ref().map_or(Ok(Scalar::None), |n| self.scalar(n, frame))
             }
-            Code::SetLocal(i, value) => self.set(|m| &mut m.stack[frame.base + *i as usize], value, frame),
-            Code::SetGlobal(i, value) => self.set(|m| &mut m.globals[*i as usize], value, frame),
+            Code::SetLocal(i, value) => {
+                self.eval_into(value, frame, |m, made| m.stack[frame.base + *i as usize].put(made))?;
+                Ok(Scalar::None)
+            }
+            Code::SetGlobal(i, value) => {
+                self.eval_into(value, frame, |m, made| m.globals[*i as usize].put(made))?;
+                Ok(Scalar::None)
+            }
             Code::For(f) => self.for_(f, frame),
             Code::While(w) => {
                 while self.condition(&w.0, frame)? {
@@ -206,26 +222,34 @@ impl Machine<'_> {
         }
     }
 
-    /// Puts a value in a slot.
+    /// Evaluates, and gives the value to `put`; a mistake is left.
     #[inline(always)]
-    fn set(&mut self, slot: impl Fn(&mut Self) -> &mut Value, value: &Node, frame: Frame<'_>) -> Fast {
-        if let Code::List(items) = &value.code
+    pub fn eval_into(
+        &mut self,
+        node: &Node,
+        frame: Frame<'_>,
+        put: impl FnOnce(&mut Self, Made),
+    ) -> Result<(), Other> {
+        if let Code::List(items) = &node.code
             && let Some(items) = items.as_array()
         {
-            match self.vector(items, value.span, frame) {
-                Ok(v) => match slot(self) {
-                    Value::Vec3(old) => *old = v,
-                    other => *other = Value::Vec3(v),
-                },
-                Err(Other) => *slot(self) = self.left()?,
+            match self.vector(items, node.span, frame) {
+                Ok(v) => put(self, Made::Vector(v)),
+                Err(Other) => {
+                    let list = self.left()?;
+                    put(self, Made::Other(list));
+                }
             }
-            return Ok(Scalar::None);
+            return Ok(());
         }
-        match self.operand(value, frame) {
-            Ok(scalar) => slot(self).put(scalar),
-            Err(Other) => *slot(self) = self.left()?,
+        match self.operand(node, frame) {
+            Ok(scalar) => put(self, Made::Scalar(scalar)),
+            Err(Other) => {
+                let value = self.left()?;
+                put(self, Made::Other(value));
+            }
         }
-        Ok(Scalar::None)
+        Ok(())
     }
 
     /// A list of three numbers; one of anything else is left.
@@ -379,7 +403,7 @@ impl Machine<'_> {
                 return Err(self.stop(Stop::Cancelled));
             }
             if let Code::Emit(_) = n.code {
-                failed |= self.attempt(n, frame).map_err(|stop| self.stop(stop))?.is_none();
+                failed |= !self.attempt(n, frame, |_, _| {}).map_err(|stop| self.stop(stop))?;
             } else {
                 self.run_part(n, frame)?;
             }
@@ -388,7 +412,7 @@ impl Machine<'_> {
             return Err(self.stop(Stop::Cancelled));
         }
         let value = if let Code::Emit(_) = last.code {
-            failed |= self.attempt(last, frame).map_err(|stop| self.stop(stop))?.is_none();
+            failed |= !self.attempt(last, frame, |_, _| {}).map_err(|stop| self.stop(stop))?;
             Ok(Scalar::None)
         } else if failed {
             self.run_part(last, frame).map(|()| Scalar::None)
@@ -404,7 +428,7 @@ impl Machine<'_> {
         let slot = frame.base + f.slot as usize;
         if let Value::Range(range) = over {
             for i in 0..range.len() {
-                self.stack[slot].put(Scalar::Number(range.from + i as f64));
+                self.stack[slot].put(Made::Scalar(Scalar::Number(range.from + i as f64)));
                 self.turn(f, frame)?;
             }
             return Ok(Scalar::None);

@@ -27,23 +27,37 @@ pub struct Template {
     pub range: Range<usize>,
 }
 
-/// A number in a statement: its bytes, counted from the statement's start, and what it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A number in a statement: its bytes, counted from the statement's start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Number {
     /// Its first byte, the sign included.
     pub start: u32,
     /// One past its last.
     pub end: u32,
-    /// What it is.
-    pub value: f64,
 }
+
+impl Number {
+    /// Its value; `text` is the statement.
+    pub fn value(self, text: &str) -> f64 {
+        text.get(self.start as usize..self.end as usize).and_then(|digits| digits.parse().ok()).unwrap_or(0.0)
+    }
+}
+
+/// Most bytes of a number: none so long is too large.
+const LONGEST: usize = 300;
 
 /// The templates that a statement may be like.
 #[derive(Default)]
 pub(super) struct Likenesses {
-    by_outline: HashMap<u64, (u32, Range<usize>)>,
-    /// Room for the numbers of two statements.
-    numbers: [Vec<Number>; 2],
+    by_outline: HashMap<u64, Known>,
+    /// Room for the numbers of a statement.
+    numbers: Vec<Number>,
+}
+
+struct Known {
+    template: u32,
+    range: Range<usize>,
+    numbers: Vec<Number>,
 }
 
 impl Likenesses {
@@ -54,24 +68,23 @@ impl Likenesses {
 
     /// The outline of a statement that can be or have a template, and the template that it is like.
     pub(super) fn look(&mut self, file: &str, statement: &str) -> Option<(u64, Option<u32>)> {
-        let [here, there] = &mut self.numbers;
-        let outline = outline(statement, here)?;
-        let known = self.by_outline.get(&outline).filter(|(_, range)| {
-            let Some(template) = file.get(range.clone()) else { return false };
-            outline_is_same(template, there, statement, here)
+        let outline = outline(statement, &mut self.numbers)?;
+        let known = self.by_outline.get(&outline).filter(|known| {
+            let template = file.get(known.range.clone()).unwrap_or("");
+            outline_is_same(template, &known.numbers, statement, &self.numbers)
         });
-        Some((outline, known.map(|(template, _)| *template)))
+        Some((outline, known.map(|known| known.template)))
     }
 
-    /// Adds a template.
+    /// Adds the statement that was looked at last as a template.
     pub(super) fn add(&mut self, outline: u64, template: u32, range: Range<usize>) {
-        self.by_outline.insert(outline, (template, range));
+        self.by_outline.insert(outline, Known { template, range, numbers: self.numbers.clone() });
     }
 }
 
 /// Whether all but their numbers is the same.
-fn outline_is_same(a: &str, a_numbers: &mut Vec<Number>, b: &str, b_numbers: &[Number]) -> bool {
-    if numbers(a, a_numbers).is_none() || a_numbers.len() != b_numbers.len() {
+fn outline_is_same(a: &str, a_numbers: &[Number], b: &str, b_numbers: &[Number]) -> bool {
+    if a_numbers.len() != b_numbers.len() {
         return false;
     }
     let (mut i, mut k) = (0, 0);
@@ -121,9 +134,9 @@ pub fn numbers(text: &str, out: &mut Vec<Number>) -> Option<()> {
             b'-' | b'0'..=b'9' if opens => {
                 if let Some(end) = number_end(bytes, i)
                     && closes(bytes, end)
+                    && end - i <= LONGEST
                 {
-                    let value = text.get(i..end)?.parse::<f64>().ok().filter(|x| x.is_finite())?;
-                    out.push(Number { start: i as u32, end: end as u32, value });
+                    out.push(Number { start: i as u32, end: end as u32 });
                     i = end;
                     continue;
                 }
@@ -167,7 +180,7 @@ mod tests {
 
     fn values(text: &str) -> Option<Vec<f64>> {
         let mut out = Vec::new();
-        numbers(text, &mut out).map(|()| out.iter().map(|n| n.value).collect())
+        numbers(text, &mut out).map(|()| out.iter().map(|n| n.value(text)).collect())
     }
 
     #[test]
