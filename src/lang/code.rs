@@ -1,7 +1,6 @@
 //! The program as it is run: names have become slots, arguments stand in the order of the parameters.
 
 use super::ast::Op;
-use super::formula::Formula;
 use super::parse::Parsed;
 use super::value::{BuiltinId, FunctionId, Value};
 use crate::diag::{FileId, Span};
@@ -113,6 +112,50 @@ pub enum Function1 {
     OfNumber(fn(f64) -> f64),
     /// In degrees.
     OfAngle(fn(f64) -> f64),
+}
+
+/// An expression of numbers.
+#[derive(Debug)]
+pub struct Formula {
+    pub steps: Vec<Step>,
+    pub is_angle: bool,
+    /// The ordinary way.
+    pub tree: Node,
+}
+
+/// One step. There is a number at hand, the result so far.
+#[derive(Clone, Copy, Debug)]
+pub enum Step {
+    /// Keeps the number at hand for later and goes on with another.
+    Take(Source),
+    /// The number at hand and a further number.
+    Add(Source),
+    Subtract(Source),
+    Multiply(Source),
+    Divide(Source),
+    /// Another operator.
+    With(Op, Source),
+    /// The number kept last, an operator, and the one at hand.
+    Join(Op),
+    Number(fn(f64) -> f64),
+    /// Of an angle: -0 is 0.
+    Angle(fn(f64) -> f64),
+    Negate,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    Constant(f64),
+    Local(u32),
+    Rarer(Rarer),
+}
+
+/// With it, a [`Source`] has so few cases that no table of jumps is made of them.
+#[derive(Clone, Copy, Debug)]
+pub enum Rarer {
+    Global(u32),
+    /// An item of a vector.
+    Item(u32, u8),
 }
 
 #[derive(Debug)]

@@ -6,7 +6,6 @@ use super::machine::{Frame, Machine};
 use super::ops;
 use super::scalar::{Fast, Made, Other};
 use super::value::{Closure, Value};
-use super::word::described;
 use crate::diag::Span;
 use ecow::{EcoString, EcoVec};
 use std::sync::Arc;
@@ -110,12 +109,7 @@ impl Machine<'_> {
     /// Evaluates what others don't depend on: a mistake is reported and the state is as before, so that others are found too.
     /// False where there was one; else `put` is given the value.
     #[inline]
-    pub fn attempt(
-        &mut self,
-        node: &Node,
-        frame: Frame<'_>,
-        put: impl FnOnce(&mut Self, Made),
-    ) -> Result<bool, Stop> {
+    pub fn attempt(&mut self, node: &Node, frame: Frame<'_>, put: impl FnOnce(&mut Self, Made)) -> Result<bool, Stop> {
         let before = (self.stack.len(), self.calls.len(), self.nesting, self.collected.len(), self.lists.len());
         if let Ok(()) = self.eval_into(node, frame, put) {
             return Ok(true);
@@ -150,28 +144,6 @@ impl Machine<'_> {
             out.push(v);
         }
         Ok(Value::List(out))
-    }
-
-    /// Why there is no loop over a value.
-    #[cold]
-    pub fn no_list(&mut self, f: &ForCode, over: &Value) -> Stop {
-        let got = described(over, &self.build);
-        let fault = Fault::new(format!("`for` goes through a list or a range, got {got}"));
-        let fault = if let Value::Number(_) = over { fault.label("for a count write `0..n`") } else { fault };
-        self.fail(fault, f.over.span)
-    }
-
-    /// Why a value is no condition.
-    #[cold]
-    pub fn no_condition(&mut self, value: &Value, span: Span) -> Stop {
-        let got = described(value, &self.build);
-        let fault = Fault::new(format!("a condition must be true or false, got {got}"));
-        let fault = match value {
-            Value::Number(_) => fault.label("compare it with something, as in `n > 0`"),
-            Value::Angle(_) => fault.label("compare it with something, as in `a > 0deg`"),
-            _ => fault,
-        };
-        self.fail(fault, span)
     }
 
     fn text(&mut self, parts: &[TextCode], span: Span, frame: Frame<'_>) -> Outcome {

@@ -10,50 +10,6 @@ use super::scalar::Scalar;
 use super::value::Value;
 use crate::math::fun;
 
-/// An expression of numbers.
-#[derive(Debug)]
-pub struct Formula {
-    steps: Vec<Step>,
-    is_angle: bool,
-    /// The ordinary way.
-    pub tree: Node,
-}
-
-/// One step. There is a number at hand, the result so far.
-#[derive(Clone, Copy, Debug)]
-enum Step {
-    /// Keeps the number at hand for later and goes on with another.
-    Take(Source),
-    /// The number at hand and a further number.
-    Add(Source),
-    Subtract(Source),
-    Multiply(Source),
-    Divide(Source),
-    /// Another operator.
-    With(Op, Source),
-    /// The number kept last, an operator, and the one at hand.
-    Join(Op),
-    Number(fn(f64) -> f64),
-    /// Of an angle: -0 is 0.
-    Angle(fn(f64) -> f64),
-    Negate,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Source {
-    Constant(f64),
-    Local(u32),
-    Rarer(Rarer),
-}
-
-/// With it, a [`Source`] has so few cases that no table of jumps is made of them.
-#[derive(Clone, Copy, Debug)]
-enum Rarer {
-    Global(u32),
-    /// An item of a vector.
-    Item(u32, u8),
-}
-
 /// Most numbers that are kept for later, and most steps: an expression that is given up has cost no more than that.
 const KEPT: usize = 8;
 const STEPS: usize = 64;

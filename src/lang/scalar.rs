@@ -1,11 +1,9 @@
 //! The fast way of the evaluator: what is a number, an angle or a truth value goes from part to part in registers. All else,
 //! a mistake too, is left in the machine, and passed on from there.
 
-use super::ast::Op;
 use super::code::*;
 use super::fault::{Outcome, Stop};
 use super::machine::{Frame, Machine};
-use super::ops;
 use super::value::Value;
 use crate::diag::Span;
 use ecow::EcoVec;
@@ -208,13 +206,7 @@ impl Machine<'_> {
                 Ok(Scalar::None)
             }
             Code::For(f) => self.for_(f, frame),
-            Code::While(w) => {
-                while self.condition(&w.0, frame)? {
-                    self.step(node.span).map_err(|stop| self.stop(stop))?;
-                    self.run_part(&w.1, frame)?;
-                }
-                Ok(Scalar::None)
-            }
+            Code::While(w) => self.while_(w, node.span, frame),
             Code::And(ab) => Ok((self.condition(&ab.0, frame)? && self.condition(&ab.1, frame)?).into()),
             Code::Or(ab) => Ok((self.condition(&ab.0, frame)? || self.condition(&ab.1, frame)?).into()),
             Code::Not(a) => Ok((!self.condition(a, frame)?).into()),
@@ -224,12 +216,7 @@ impl Machine<'_> {
 
     /// Evaluates, and gives the value to `put`; a mistake is left.
     #[inline(always)]
-    pub fn eval_into(
-        &mut self,
-        node: &Node,
-        frame: Frame<'_>,
-        put: impl FnOnce(&mut Self, Made),
-    ) -> Result<(), Other> {
+    pub fn eval_into(&mut self, node: &Node, frame: Frame<'_>, put: impl FnOnce(&mut Self, Made)) -> Result<(), Other> {
         if let Code::List(items) = &node.code
             && let Some(items) = items.as_array()
         {
@@ -315,156 +302,5 @@ impl Machine<'_> {
             Ok(_) => Ok(()),
             Err(Other) => self.left().map(drop),
         }
-    }
-
-    #[inline(never)]
-    fn binary(&mut self, operation: &Operation, node: &Node, frame: Frame<'_>) -> Fast {
-        let a = match self.operand(&operation.a, frame) {
-            Ok(a) => a,
-            Err(Other) => return self.of_other(operation, node, frame),
-        };
-        let b = self.operand(&operation.b, frame);
-        if let (Scalar::Number(x), Ok(Scalar::Number(y))) = (a, b) {
-            let number = match operation.op {
-                Op::Add => x + y,
-                Op::Subtract => x - y,
-                Op::Multiply => x * y,
-                Op::Divide | Op::Remainder => ops::quotient(operation.op, x, y),
-                Op::Less => return Ok((x < y).into()),
-                Op::Greater => return Ok((x > y).into()),
-                _ => f64::NAN,
-            };
-            // What isn't finite is a mistake, or an operator of the long way.
-            if number.is_finite() {
-                return Ok(Scalar::Number(number));
-            }
-        }
-        self.of_scalar(operation, a, b, node)
-    }
-
-    /// An operator on a scalar and any value.
-    #[inline(never)]
-    fn of_scalar(&mut self, operation: &Operation, a: Scalar, b: Fast, node: &Node) -> Fast {
-        if let (Op::Multiply, Scalar::Number(x), Ok(Scalar::Angle(y)))
-        | (Op::Multiply, Scalar::Angle(x), Ok(Scalar::Number(y))) = (operation.op, a, b)
-            && (x * y).is_finite()
-        {
-            return Ok(Scalar::Angle(x * y));
-        }
-        let b = b.map_or_else(|Other| self.left(), |b| Ok(b.into()))?;
-        self.operate(operation, &a.into(), &b, node)
-    }
-
-    /// An operator on what was left and what comes next.
-    #[inline(never)]
-    fn of_other(&mut self, operation: &Operation, node: &Node, frame: Frame<'_>) -> Fast {
-        let a = self.left()?;
-        let b = self.fresh(&operation.b, frame)?;
-        self.operate(operation, &a, &b, node)
-    }
-
-    /// An operator on any two values.
-    fn operate(&mut self, operation: &Operation, a: &Value, b: &Value, node: &Node) -> Fast {
-        let outcome = ops::binary(operation.op, a, b, &mut self.build, node.span).map_err(|f| {
-            let span = if f.argument == Some(1) { operation.b.span } else { node.span };
-            self.fail(f, span)
-        });
-        self.leave(outcome)
-    }
-
-    /// A word that makes a number of one number or angle.
-    fn apply(&mut self, apply: &Apply, span: Span, frame: Frame<'_>) -> Fast {
-        let [(_, of)] = &apply.args;
-        let mut value = match self.operand(of, frame) {
-            Ok(scalar) => {
-                let y = match (scalar, apply.function) {
-                    (Scalar::Number(x), Function1::OfNumber(f)) => f(x),
-                    (Scalar::Angle(x), Function1::OfAngle(f)) => f(x + 0.0), // -0 is 0
-                    _ => f64::NAN,
-                };
-                if y.is_finite() {
-                    return Ok(Scalar::Number(y));
-                }
-                scalar.into()
-            }
-            Err(Other) => self.left()?,
-        };
-        let outcome = self.run_word(apply.word, std::slice::from_mut(&mut value), span, &apply.args);
-        self.leave(outcome)
-    }
-
-    /// The value of the last one. What is only added to the scene is independent of what comes after: a mistake in it
-    /// doesn't hide theirs.
-    fn block(&mut self, nodes: &[Node], frame: Frame<'_>) -> Fast {
-        let Some((last, before)) = nodes.split_last() else { return Ok(Scalar::None) };
-        let mut failed = false;
-        for n in before {
-            if self.build.is_cancelled() {
-                return Err(self.stop(Stop::Cancelled));
-            }
-            if let Code::Emit(_) = n.code {
-                failed |= !self.attempt(n, frame, |_, _| {}).map_err(|stop| self.stop(stop))?;
-            } else {
-                self.run_part(n, frame)?;
-            }
-        }
-        if self.build.is_cancelled() {
-            return Err(self.stop(Stop::Cancelled));
-        }
-        let value = if let Code::Emit(_) = last.code {
-            failed |= !self.attempt(last, frame, |_, _| {}).map_err(|stop| self.stop(stop))?;
-            Ok(Scalar::None)
-        } else if failed {
-            self.run_part(last, frame).map(|()| Scalar::None)
-        } else {
-            return self.scalar(last, frame);
-        };
-        if value.is_ok() && failed { Err(self.stop(Stop::Reported)) } else { value }
-    }
-
-    #[inline(never)]
-    fn for_(&mut self, f: &ForCode, frame: Frame<'_>) -> Fast {
-        let over = self.fresh(&f.over, frame)?;
-        let slot = frame.base + f.slot as usize;
-        if let Value::Range(range) = over {
-            for i in 0..range.len() {
-                self.stack[slot].put(Made::Scalar(Scalar::Number(range.from + i as f64)));
-                self.turn(f, frame)?;
-            }
-            return Ok(Scalar::None);
-        }
-        if !matches!(over, Value::List(_) | Value::Vec3(_)) {
-            let stop = self.no_list(f, &over);
-            return Err(self.stop(stop));
-        }
-        for i in 0..over.length().unwrap_or(0) {
-            self.stack[slot] = over.item(i).unwrap_or(Value::None);
-            self.turn(f, frame)?;
-        }
-        Ok(Scalar::None)
-    }
-
-    /// One turn of a loop.
-    #[inline]
-    fn turn(&mut self, f: &ForCode, frame: Frame<'_>) -> Result<(), Other> {
-        self.step(f.over.span).map_err(|stop| self.stop(stop))?;
-        if let Some(guard) = &f.guard
-            && !self.condition(guard, frame)?
-        {
-            return Ok(());
-        }
-        self.run_part(&f.body, frame)
-    }
-
-    /// Whether a condition holds.
-    fn condition(&mut self, node: &Node, frame: Frame<'_>) -> Result<bool, Other> {
-        let value = match self.operand(node, frame) {
-            Ok(Scalar::True) => return Ok(true),
-            Ok(Scalar::False) => return Ok(false),
-            Ok(scalar) => scalar.into(),
-            Err(Other) => self.left()?,
-        };
-        let stop = self.no_condition(&value, node.span);
-        Err(self.stop(stop))
     }
 }

@@ -57,7 +57,8 @@ pub fn parse(file: FileId, text: &str, cancel: &AtomicBool) -> Parsed {
             continue;
         }
         // Where the two differ there are comments.
-        let outline = text.get(piece.range.clone()).filter(|t| *t == source).and_then(|_| likenesses.look(text, source));
+        let outline =
+            text.get(piece.range.clone()).filter(|t| *t == source).and_then(|_| likenesses.look(text, source));
         if let Some((_, Some(template))) = outline {
             likes.push(Like { template, start: span.start, end: span.end });
             continue;

@@ -82,7 +82,8 @@ const PLAIN: [bool; 256] = {
     let mut plain = [false; 256];
     let mut b = 0;
     while b < 256 {
-        plain[b] = (b as u8).is_ascii_alphanumeric() || matches!(b as u8, b'_' | b'.' | b':' | b'-' | b'+') || b >= 0x80;
+        plain[b] =
+            (b as u8).is_ascii_alphanumeric() || matches!(b as u8, b'_' | b'.' | b':' | b'-' | b'+') || b >= 0x80;
         b += 1;
     }
     plain
