@@ -46,6 +46,9 @@ impl Number {
 /// Most bytes of a number: none so long is too large.
 const LONGEST: usize = 300;
 
+/// Most templates at a time: a text of that many kinds of lines was written by hand, or is alike in something else.
+const MOST: usize = 1000;
+
 /// The templates that a statement may be like.
 #[derive(Default)]
 pub(super) struct Likenesses {
@@ -78,6 +81,9 @@ impl Likenesses {
 
     /// Adds the statement that was looked at last as a template.
     pub(super) fn add(&mut self, outline: u64, template: u32, range: Range<usize>) {
+        if self.by_outline.len() >= MOST {
+            self.clear();
+        }
         self.by_outline.insert(outline, Known { template, range, numbers: self.numbers.clone() });
     }
 }
