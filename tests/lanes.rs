@@ -62,8 +62,8 @@ impl Mask for Bools {
     fn splat(value: bool) -> Bools {
         Bools([value; WIDTH])
     }
-    fn first(n: usize) -> Bools {
-        mask(|i| i < n)
+    fn from_bits(bits: u32) -> Bools {
+        mask(|i| bits >> i & 1 == 1)
     }
     fn bits(self) -> u32 {
         (0..WIDTH).map(|i| (self.0[i] as u32) << i).sum()

@@ -7,6 +7,7 @@ pub mod float;
 pub mod fun;
 pub mod hash;
 pub mod interval;
+pub(crate) mod lane;
 pub mod noise;
 pub mod real;
 pub mod tri;

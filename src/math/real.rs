@@ -21,10 +21,15 @@ pub trait Elem: Copy + PartialOrd + Default + Send + Sync + 'static {
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// The same truth value in every lane.
     fn splat(value: bool) -> Self;
-    /// True in the first `n` lanes.
-    fn first(n: usize) -> Self;
+    /// True in the lanes whose bit is set, lane 0 lowest.
+    fn from_bits(bits: u32) -> Self;
     /// One bit a lane, lane 0 lowest.
     fn bits(self) -> u32;
+    /// True in the first `n` lanes, at most 32.
+    #[inline(always)]
+    fn first(n: usize) -> Self {
+        Self::from_bits(((1u64 << n) - 1) as u32)
+    }
     /// Whether any lane is true.
     #[inline(always)]
     fn any(self) -> bool {
@@ -174,6 +179,9 @@ pub trait Lane: Real<Single = f64> {
     /// Packs the lanes that `m` selects to the front of `dst`; lanes after them may be overwritten, so `dst` must hold
     /// [`WIDTH`](Lane::WIDTH) values.
     fn compress(self, m: Self::Mask, dst: &mut [Self::Elem]);
+    /// `f`, in a function of its own that is compiled for the instructions of this lane. What is over lanes and isn't inlined
+    /// into such a function would call every operation.
+    fn vectorize<T>(f: impl FnOnce() -> T) -> T;
 }
 
 /// The mask of a single value.
@@ -207,8 +215,8 @@ impl Mask for Bool {
         Bool(value)
     }
     #[inline(always)]
-    fn first(n: usize) -> Bool {
-        Bool(n > 0)
+    fn from_bits(bits: u32) -> Bool {
+        Bool(bits & 1 == 1)
     }
     #[inline(always)]
     fn bits(self) -> u32 {

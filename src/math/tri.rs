@@ -39,8 +39,8 @@ impl Mask for Tri {
         Tri { certain: value, possible: value }
     }
     #[inline(always)]
-    fn first(n: usize) -> Tri {
-        Mask::splat(n > 0)
+    fn from_bits(bits: u32) -> Tri {
+        Mask::splat(bits & 1 == 1)
     }
     /// Set where it may hold: what is skipped where no lane is set is surely not needed.
     #[inline(always)]

@@ -9,6 +9,8 @@ use super::tile::TileWorker;
 use super::world::World;
 use crate::film::Film;
 use crate::math::Lane;
+#[cfg(target_arch = "x86_64")]
+use crate::math::lane;
 use crate::scene::Precision;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -54,7 +56,9 @@ pub fn instructions(asked: Instructions) -> &'static str {
     match Build::of(asked) {
         Build::Common => "common",
         #[cfg(target_arch = "x86_64")]
-        Build::Fma => "AVX2 and FMA",
+        Build::Avx2 => "AVX2 and FMA, 4 rays at a time",
+        #[cfg(target_arch = "x86_64")]
+        Build::Avx512 => "AVX-512, 8 rays at a time",
     }
 }
 
@@ -65,14 +69,19 @@ enum Build {
     Common,
     /// AVX2 and FMA of x86-64.
     #[cfg(target_arch = "x86_64")]
-    Fma,
+    Avx2,
+    /// AVX-512 of x86-64.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
 }
 
 impl Build {
     fn of(asked: Instructions) -> Build {
         #[cfg(target_arch = "x86_64")]
-        if asked == Instructions::Best && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            return Build::Fma;
+        match asked {
+            Instructions::Best if lane::avx512_is_there() => return Build::Avx512,
+            Instructions::Best | Instructions::Narrow if lane::avx2_is_there() => return Build::Avx2,
+            Instructions::Best | Instructions::Narrow | Instructions::Common => {}
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = asked;
@@ -104,9 +113,18 @@ impl Work<'_> {
     /// Rays traced, and by how many threads.
     fn run(&self, film: &mut Film, footprints: Option<&mut [Footprint]>) -> Option<(RayCounts, usize)> {
         let on = Build::of(self.options.instructions);
-        let run = || match self.options.precision {
-            Precision::F64 => self.trace::<f64>(on, film, footprints),
-            Precision::F32 => self.trace::<f32>(on, film, footprints),
+        // The one place that chooses lanes: only what the processor was found to have.
+        let run = || match (on, self.options.precision) {
+            (Build::Common, Precision::F64) => self.trace::<f64>(film, footprints),
+            (Build::Common, Precision::F32) => self.trace::<f32>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx2, Precision::F64) => self.trace::<lane::F64x4>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx2, Precision::F32) => self.trace::<lane::F32x8>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx512, Precision::F64) => self.trace::<lane::F64x8>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx512, Precision::F32) => self.trace::<lane::F32x16>(film, footprints),
         };
         // Patterns may nest deep, and each level takes a frame of the stack.
         let threads = self.options.threads.unwrap_or(0);
@@ -116,12 +134,7 @@ impl Work<'_> {
         }
     }
 
-    fn trace<L: Lane>(
-        &self,
-        on: Build,
-        film: &mut Film,
-        footprints: Option<&mut [Footprint]>,
-    ) -> Option<(RayCounts, usize)> {
+    fn trace<L: Lane>(&self, film: &mut Film, footprints: Option<&mut [Footprint]>) -> Option<(RayCounts, usize)> {
         let record = footprints.is_some();
         let recorder = || if record { Recorder::new(self.world.primitives.len()) } else { Recorder::off() };
         let worker = || TileWorker::<L>::new(self.world, self.options, self.cancel, recorder());
@@ -131,7 +144,7 @@ impl Work<'_> {
                 return RayCounts::default();
             }
             worker.tracer.counts = RayCounts::default();
-            render_tile(on, worker, job.tile, &mut job.rows);
+            L::vectorize(|| worker.render(job.tile, &mut job.rows));
             if let Some(footprint) = job.footprint {
                 *footprint = worker.tracer.recorder().take();
             }
@@ -171,23 +184,6 @@ impl Work<'_> {
         }
         jobs
     }
-}
-
-/// Renders one tile.
-fn render_tile<L: Lane>(build: Build, worker: &mut TileWorker<'_, L>, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
-    match build {
-        Build::Common => worker.render(tile, rows),
-        // SAFETY: `Build::of` alone makes this value, and only where the processor was found to have both.
-        #[cfg(target_arch = "x86_64")]
-        Build::Fma => unsafe { render_tile_fma(worker, tile, rows) },
-    }
-}
-
-/// The tile's loop, compiled for AVX2 and FMA: a fused multiply-add is then one instruction instead of a call.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn render_tile_fma<L: Lane>(worker: &mut TileWorker<'_, L>, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
-    worker.render(tile, rows);
 }
 
 #[cfg(test)]
@@ -250,6 +246,7 @@ mod tests {
             };
             let (best, common) = (on(Instructions::Best), on(Instructions::Common));
             assert!(best.rays.transmitted > 1000 && best.film == common.film);
+            assert!(best.film == on(Instructions::Narrow).film);
         }
     }
 }

@@ -32,6 +32,8 @@ pub struct Options {
 pub enum Instructions {
     /// The best that this machine has.
     Best,
+    /// The best that this machine has, but for its widest registers: four numbers at a time instead of eight.
+    Narrow,
     /// Those that every processor of its family has. Where fused multiply-add isn't among them, the library stands in.
     Common,
 }

@@ -1,0 +1,188 @@
+//! Registers of 256 bits: four `f64`, eight `f32`.
+
+use super::common;
+use crate::math::{Dd, Lane, Mask, Real};
+use std::arch::x86_64::*;
+
+macro_rules! register {
+    ($name:ident, $mask:ident, $elem:ident, $int:ident, $width:literal, $register:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
+     $set:ident, $zero:ident, $load:ident, $store:ident, $fma:ident, $fms:ident, $sqrt:ident, $floor:ident, $xor:ident, $and:ident,
+     $and_not:ident, $or:ident, $compare:ident, $blend:ident, $bits:ident, $min:ident, $max:ident, $set_int:ident, $load_int:ident,
+     $same_int:ident, $from_int:ident) => {
+        /// Several numbers.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct $name($register);
+
+        /// All bits of a number set where true.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct $mask($register);
+
+        // SAFETY, of every block in this file: see the module above. Loads and stores check their slices first.
+
+        impl std::ops::BitAnd for $mask {
+            type Output = Self;
+            #[inline(always)]
+            fn bitand(self, o: Self) -> Self {
+                unsafe { $mask($and(self.0, o.0)) }
+            }
+        }
+        impl std::ops::BitOr for $mask {
+            type Output = Self;
+            #[inline(always)]
+            fn bitor(self, o: Self) -> Self {
+                unsafe { $mask($or(self.0, o.0)) }
+            }
+        }
+        impl std::ops::Not for $mask {
+            type Output = Self;
+            #[inline(always)]
+            fn not(self) -> Self {
+                unsafe { $mask($xor(self.0, $compare::<_CMP_EQ_OQ>($zero(), $zero()))) }
+            }
+        }
+        impl Mask for $mask {
+            #[inline(always)]
+            fn splat(value: bool) -> Self {
+                Self::from_bits(if value { u32::MAX } else { 0 })
+            }
+            #[inline(always)]
+            fn from_bits(bits: u32) -> Self {
+                const ONE_A_LANE: [$int; $width] = {
+                    let (mut a, mut i) = ([0; $width], 0);
+                    while i < $width {
+                        a[i] = 1 << i;
+                        i += 1;
+                    }
+                    a
+                };
+                unsafe {
+                    let lane = $load_int(ONE_A_LANE.as_ptr().cast());
+                    let here = _mm256_and_si256($set_int(bits as $int), lane);
+                    $mask($from_int($same_int(here, lane)))
+                }
+            }
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                unsafe { $bits(self.0) as u32 }
+            }
+        }
+
+        common!($name, $mask, $elem, $width, $add, $sub, $mul, $div);
+
+        impl $name {
+            #[inline(always)]
+            fn flipped(self) -> Self {
+                unsafe { $name($xor(self.0, $set(-0.0))) }
+            }
+        }
+
+        impl Real for $name {
+            type Mask = $mask;
+            type Single = f64;
+            type Fine = Dd;
+            const UNIT_ROUNDOFF: f64 = <$elem as Real>::UNIT_ROUNDOFF;
+            const LEAST: f64 = <$elem as Real>::LEAST;
+            #[inline(always)]
+            fn splat(x: f64) -> Self {
+                unsafe { $name($set(x as $elem)) }
+            }
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                unsafe { $name($fma(self.0, b.0, c.0)) }
+            }
+            #[inline(always)]
+            fn mul_sub(self, b: Self, c: Self) -> Self {
+                unsafe { $name($fms(self.0, b.0, c.0)) }
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                unsafe { $name($sqrt(self.0)) }
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                unsafe { $name($floor(self.0)) }
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                unsafe { $name($and_not($set(-0.0), self.0)) }
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                unsafe { $name($or($and_not($set(-0.0), self.0), $and($set(-0.0), sign.0))) }
+            }
+            #[inline(always)]
+            fn lt(self, o: Self) -> $mask {
+                unsafe { $mask($compare::<_CMP_LT_OQ>(self.0, o.0)) }
+            }
+            #[inline(always)]
+            fn le(self, o: Self) -> $mask {
+                unsafe { $mask($compare::<_CMP_LE_OQ>(self.0, o.0)) }
+            }
+            #[inline(always)]
+            fn same(self, o: Self) -> $mask {
+                unsafe { $mask($compare::<_CMP_EQ_OQ>(self.0, o.0)) }
+            }
+            #[inline(always)]
+            fn select(m: $mask, a: Self, b: Self) -> Self {
+                unsafe { $name($blend(b.0, a.0, m.0)) }
+            }
+            /// The instruction gives its second operand where the two compare equal or either is NaN.
+            #[inline(always)]
+            fn min(self, o: Self) -> Self {
+                unsafe { $name($min(self.0, o.0)) }
+            }
+            #[inline(always)]
+            fn max(self, o: Self) -> Self {
+                unsafe { $name($max(self.0, o.0)) }
+            }
+            common!(@each $mask, $width);
+        }
+
+        impl Lane for $name {
+            type Elem = $elem;
+            const WIDTH: usize = $width;
+            #[inline(always)]
+            fn load(src: &[$elem]) -> Self {
+                unsafe { $name($load(src[..$width].as_ptr())) }
+            }
+            #[inline(always)]
+            fn store(self, dst: &mut [$elem]) {
+                unsafe { $store(dst[..$width].as_mut_ptr(), self.0) }
+            }
+            #[inline(always)]
+            fn compress(self, m: $mask, dst: &mut [$elem]) {
+                let (a, dst) = (self.to_array(), &mut dst[..$width]);
+                let (mut bits, mut at) = (m.bits(), 0);
+                while bits != 0 {
+                    dst[at] = a[bits.trailing_zeros() as usize % $width];
+                    at += 1;
+                    bits &= bits - 1;
+                }
+            }
+            #[inline(always)]
+            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+                #[inline(never)]
+                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
+                    f()
+                }
+                unsafe { compiled_for_it(f) }
+            }
+        }
+    };
+}
+
+register!(
+    F64x4, Mask4, f64, i64, 4, __m256d, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_set1_pd,
+    _mm256_setzero_pd, _mm256_loadu_pd, _mm256_storeu_pd, _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_sqrt_pd,
+    _mm256_floor_pd, _mm256_xor_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_or_pd, _mm256_cmp_pd, _mm256_blendv_pd,
+    _mm256_movemask_pd, _mm256_min_pd, _mm256_max_pd, _mm256_set1_epi64x, _mm256_loadu_si256, _mm256_cmpeq_epi64,
+    _mm256_castsi256_pd
+);
+register!(
+    F32x8, Mask8, f32, i32, 8, __m256, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_set1_ps,
+    _mm256_setzero_ps, _mm256_loadu_ps, _mm256_storeu_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_sqrt_ps,
+    _mm256_floor_ps, _mm256_xor_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_or_ps, _mm256_cmp_ps, _mm256_blendv_ps,
+    _mm256_movemask_ps, _mm256_min_ps, _mm256_max_ps, _mm256_set1_epi32, _mm256_loadu_si256, _mm256_cmpeq_epi32,
+    _mm256_castsi256_ps
+);
