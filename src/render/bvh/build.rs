@@ -6,28 +6,38 @@
 use super::node::{Box4, Child, Node, WIDE};
 use super::split::{Item, Part, halve, split};
 use super::walk::MOST_LEVELS;
+use crate::render::graft::MOST_GRAFTS;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Below this level parts are halved by count, whatever the heuristic says, which bounds the depth: 2^32 items halved three
 /// times a level are single ones after 11 more. Sixteen levels are left for grafts.
-const FREE_LEVELS: usize = MOST_LEVELS - 11 - super::MOST_GRAFTS;
+const FREE_LEVELS: usize = MOST_LEVELS - 11 - MOST_GRAFTS;
 /// A part of this many items is work worth another thread's while.
 const SHARED: usize = 4096;
 
-/// Builds the nodes over `items`, which it brings into the order of the leaves; the first node is the root. `most` primitives
-/// make a leaf. Ends early, with anything, where `cancel` is set.
-pub fn nodes_over(items: &mut [Item], most: usize, cancel: &AtomicBool) -> Vec<Node> {
+/// Builds the nodes over `items`, which it brings into the order of the leaves; the first node is the root. Up to eight
+/// primitives whose numbers are `batched_from` or more make a leaf, and any other by itself. Ends early, with anything, where
+/// `cancel` is set.
+pub fn nodes_over(items: &mut [Item], batched_from: u32, cancel: &AtomicBool) -> Vec<Node> {
     let whole = Part::over(items, 0);
-    Builder { most: most.clamp(1, Child::MOST), cancel }.subtree(items, whole, 0)
+    let most = if items.iter().any(|i| i.id() >= batched_from) { Child::MOST } else { 1 };
+    Builder { batched_from, most, cancel }.subtree(items, whole, 0)
 }
 
 struct Builder<'c> {
+    batched_from: u32,
+    /// Most primitives of any leaf.
     most: usize,
     cancel: &'c AtomicBool,
 }
 
 impl Builder<'_> {
+    /// Whether items make a leaf.
+    fn is_leaf(&self, items: &[Item]) -> bool {
+        items.len() == 1 || (items.len() <= self.most && items.iter().all(|i| i.id() >= self.batched_from))
+    }
+
     /// The nodes of a part; children are numbered from its own root.
     fn subtree(&self, items: &mut [Item], whole: Part, level: usize) -> Vec<Node> {
         let mut nodes = Vec::new();
@@ -46,14 +56,14 @@ impl Builder<'_> {
         }
         let below: Vec<Vec<Node>> = jobs
             .into_par_iter()
-            .map(|(items, part)| if part.count > self.most { self.subtree(items, part, level + 1) } else { Vec::new() })
+            .map(|(items, part)| if self.is_leaf(items) { Vec::new() } else { self.subtree(items, part, level + 1) })
             .collect();
         nodes.reserve(below.iter().map(Vec::len).sum());
         for (slot, (part, mut below)) in parts.into_iter().flatten().zip(below).enumerate() {
             let child = if below.is_empty() { Child::leaf(part.first, part.count) } else { Child::node(nodes.len()) };
             nodes[0].set(slot, part.bounds, child);
             let offset = nodes.len();
-            below.iter_mut().for_each(|n| n.renumber(offset));
+            below.iter_mut().for_each(|n| n.renumber(offset, 0));
             nodes.append(&mut below);
         }
         nodes
@@ -70,14 +80,13 @@ impl Builder<'_> {
         for (slot, part) in self.parts(rest, whole, level).into_iter().flatten().enumerate() {
             let (own, after) = rest.split_at_mut(part.count);
             rest = after;
-            let child = match part.count > self.most {
-                true => Child::node(nodes.len()),
-                false => Child::leaf(part.first, part.count),
-            };
-            nodes[at].set(slot, part.bounds, child);
-            if part.count > self.most {
-                self.add(nodes, own, part, level + 1);
+            if self.is_leaf(own) {
+                nodes[at].set(slot, part.bounds, Child::leaf(part.first, part.count));
+                continue;
             }
+            let child = Child::node(nodes.len());
+            nodes[at].set(slot, part.bounds, child);
+            self.add(nodes, own, part, level + 1);
         }
     }
 
@@ -87,11 +96,20 @@ impl Builder<'_> {
         let mut parts = [None; WIDE];
         parts[0] = Some(whole);
         let free = level < FREE_LEVELS;
+        // What comes to lie directly above the leaves is split evenly, into no more parts than it takes: half-empty nodes cost as
+        // much memory as full ones.
+        let full = WIDE * self.most;
+        let enough = match whole.count {
+            n if n > full && n <= WIDE * full => full,
+            n if n > self.most => self.most,
+            _ => 1,
+        };
+        let by_area = free && whole.count > WIDE * full;
         for n in 1..WIDE {
             let mut chosen: Option<(usize, Part)> = None;
             for (k, part) in parts.iter().enumerate().take(n) {
-                let Some(part) = part.filter(|p| p.count > self.most) else { continue };
-                let larger = |than: Part| match free && part.area != than.area {
+                let Some(part) = part.filter(|p| p.count > enough) else { continue };
+                let larger = |than: Part| match by_area && part.area != than.area {
                     true => part.area > than.area,
                     false => part.count > than.count,
                 };

@@ -5,17 +5,18 @@
 //! passed over only where every ray surely misses what is in it.
 
 mod build;
-mod node;
+pub(super) mod node;
 mod split;
 mod walk;
 
 use super::bounds::Bounds;
-use crate::math::{Elem, Lane};
+use crate::math::Lane;
 use node::{Child, Fit, Node};
 use rayon::prelude::*;
 use split::Item;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use walk::{Beam, Spread, walk};
+use walk::Beam;
+pub use walk::{Leaves, Spread, farthest};
 
 /// The tree.
 #[derive(Clone, Debug)]
@@ -33,9 +34,6 @@ pub struct Bvh {
     pub(super) grafts: usize,
 }
 
-/// Most grafts, one upon the other: each makes the tree deeper by one.
-pub const MOST_GRAFTS: usize = 16;
-
 /// A tree smaller than this is built before another thread is awake.
 const SHARED: usize = 4096;
 
@@ -46,34 +44,45 @@ impl Default for Bvh {
 }
 
 impl Bvh {
-    /// Builds the tree over (primitive, box) pairs.
-    pub fn build(leaves: &[(u32, Bounds)]) -> Bvh {
-        Bvh::build_unless(leaves, 1, &AtomicBool::new(false)).unwrap_or_default()
+    /// Builds the tree over (primitive, box) pairs, one primitive a leaf.
+    pub fn build(leaves: Vec<(u32, Bounds)>) -> Bvh {
+        Bvh::build_unless(leaves, u32::MAX, &AtomicBool::new(false)).unwrap_or_default()
     }
 
-    /// The same, with up to `most` primitives a leaf, at most eight: more than one is for primitives that are tested as fast
-    /// as boxes are. `None` where `cancel` is set meanwhile.
-    pub fn build_unless(leaves: &[(u32, Bounds)], most: usize, cancel: &AtomicBool) -> Option<Bvh> {
+    /// Builds the tree with up to eight primitives a leaf where all their numbers are `batched_from` or more: those are tested
+    /// as fast as their box, as eight triangles are that go into one register. `None` where `cancel` is set meanwhile.
+    pub fn build_unless(leaves: Vec<(u32, Bounds)>, batched_from: u32, cancel: &AtomicBool) -> Option<Bvh> {
+        let around = |leaves: &[(u32, Bounds)]| leaves.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1));
+        let bounds = match leaves.len() < SHARED {
+            true => around(&leaves),
+            false => leaves.par_chunks(SHARED).map(around).reduce(|| Bounds::EMPTY, Bounds::union),
+        };
+        Bvh::build_in(Fit::new(&bounds), bounds, leaves, batched_from, cancel)
+    }
+
+    /// Builds the tree in given units.
+    pub(super) fn build_in(
+        fit: Fit,
+        bounds: Bounds,
+        leaves: Vec<(u32, Bounds)>,
+        batched_from: u32,
+        cancel: &AtomicBool,
+    ) -> Option<Bvh> {
         if leaves.is_empty() {
             return Some(Bvh::default());
         }
-        let both = |a: Bounds, b: Bounds| a.union(b);
-        let bounds = match leaves.len() < SHARED {
-            true => leaves.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1)),
-            false => leaves.par_chunks(SHARED).map(|c| c.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1))).reduce(|| Bounds::EMPTY, both),
-        };
-        let fit = Fit::new(&bounds);
         let item = |(id, b): &(u32, Bounds)| Item::new(*id, fit.shrink(b));
         let mut items: Vec<Item> = match leaves.len() < SHARED {
             true => leaves.iter().map(item).collect(),
             false => leaves.par_iter().map(item).collect(),
         };
-        let nodes = build::nodes_over(&mut items, most, cancel);
+        drop(leaves);
+        let nodes = build::nodes_over(&mut items, batched_from, cancel);
         let ids = items.iter().map(Item::id).collect();
         (!cancel.load(Relaxed)).then_some(Bvh { nodes, ids, fit, bounds, changed: 0, grafts: 0 })
     }
 
-    /// Every primitive with a box that surely holds it: that of its leaf.
+    /// Every primitive with a box that surely holds it: that of its leaf, in the order of the leaves.
     pub fn leaves(&self) -> impl Iterator<Item = (u32, Bounds)> {
         let slots = self.nodes.iter().flat_map(|n| n.children().map(move |(slot, child)| (n, slot, child)));
         slots.filter(|(.., child)| child.is_leaf()).flat_map(|(node, slot, child)| {
@@ -95,13 +104,6 @@ impl Bvh {
     /// Bytes it occupies.
     pub fn memory_bytes(&self) -> usize {
         self.nodes.len() * size_of::<Node>() + self.ids.len() * size_of::<u32>()
-    }
-
-    /// Its shape, for people: nodes, slots in use, leaves, depth.
-    pub fn summary(&self) -> String {
-        let slots: usize = self.nodes.iter().map(|n| n.children().count()).sum();
-        let leaves = self.nodes.iter().flat_map(Node::children).filter(|c| c.1.is_leaf()).count();
-        format!("{} nodes, {slots} slots, {leaves} leaves", self.nodes.len())
     }
 
     #[inline(always)]
@@ -143,49 +145,39 @@ impl Bvh {
     /// Calls `test(primitive)` for every primitive whose leaf's box rays meet before their `t_max`, nearer boxes first.
     /// `test` gives the lanes' new `t_max`; a lane is finished when that is not positive.
     #[inline(always)]
-    pub fn traverse<L: Lane>(&self, o: [L; 3], d: [L; 3], t_max: L, mut test: impl FnMut(u32) -> L) {
-        let farthest = |t: L| {
-            let mut all = [L::Elem::default(); 16];
-            t.store(&mut all);
-            all[..L::WIDTH].iter().fold(f64::NEG_INFINITY, |m, x| if x.to_f64() > m { x.to_f64() } else { m })
-        };
-        let mut spread = Spread { o: [[f64::INFINITY, f64::NEG_INFINITY]; 3], d: [[f64::INFINITY, f64::NEG_INFINITY]; 3] };
-        let mut alive = [L::Elem::default(); 16];
-        t_max.store(&mut alive);
-        for i in 0..3 {
-            for (v, range) in [(o[i], &mut spread.o[i]), (d[i], &mut spread.d[i])] {
-                let mut all = [L::Elem::default(); 16];
-                v.store(&mut all);
-                for k in 0..L::WIDTH {
-                    if alive[k].to_f64() > 0.0 {
-                        let x = all[k].to_f64();
-                        *range = [if x < range[0] { x } else { range[0] }, if x > range[1] { x } else { range[1] }];
-                    }
-                }
-            }
+    pub fn traverse<L: Lane>(&self, o: [L; 3], d: [L; 3], t_max: L, test: impl FnMut(u32) -> L) {
+        let t = walk::farthest(t_max);
+        if t > 0.0 {
+            let spread = Spread::of(o, d, t_max);
+            self.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t, &mut OneByOne { test, t_max });
         }
-        let t = farthest(t_max);
-        if !(t > 0.0) {
-            return;
-        }
-        self.walk(&spread, L::UNIT_ROUNDOFF, t, |ids| {
-            let mut t = t_max;
-            for id in ids {
-                t = test(*id);
-            }
-            farthest(t)
-        });
     }
 
-    /// Calls `test` for every leaf whose box one of the rays of `spread` meets before `t_max`, nearer boxes first, with the
-    /// primitives in it, of which there are one to eight. `test` gives the new `t_max`; the search ends when that isn't
-    /// positive. `u` is the unit roundoff of the kernels that `test` calls.
+    /// Has `leaves` test every leaf whose box one of the rays of `spread` meets before `t_max`, nearer boxes first. `u` is
+    /// the unit roundoff of the kernels that it calls.
     #[inline(always)]
-    pub fn walk(&self, spread: &Spread, u: f64, t_max: f64, mut test: impl FnMut(&[u32]) -> f64) {
+    pub fn walk<W: Lane<Elem = f32>>(&self, spread: &Spread, u: f64, t_max: f64, leaves: &mut impl Leaves) {
         if self.nodes.is_empty() {
             return;
         }
-        let Some(beam) = Beam::new(&self.fit, &self.bounds, spread, u) else { return };
-        walk(&self.nodes, &beam, beam.reach(t_max), |leaf| beam.reach(test(self.ids_of(leaf))));
+        if let Some(beam) = Beam::new(&self.fit, &self.bounds, spread, u) {
+            walk::walk::<W>(&self.nodes, &self.ids, &beam, t_max, leaves);
+        }
+    }
+}
+
+/// Leaves whose primitives a function tests one by one.
+struct OneByOne<L, F> {
+    test: F,
+    t_max: L,
+}
+
+impl<L: Lane, F: FnMut(u32) -> L> Leaves for OneByOne<L, F> {
+    #[inline(always)]
+    fn test(&mut self, ids: &[u32]) -> f64 {
+        for id in ids {
+            self.t_max = (self.test)(*id);
+        }
+        walk::farthest(self.t_max)
     }
 }

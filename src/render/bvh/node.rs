@@ -3,7 +3,8 @@
 //! Faces are `f32`, rounded outwards, in the tree's own units ([`Fit`]): a box is there to say where a surface surely isn't, and
 //! half the bytes are half the time. So a scene may be as large or as small as `f64` allows.
 
-use super::walk::Beam;
+use super::walk::Registers;
+use crate::math::{Lane, Mask, Real};
 use crate::render::bounds::{Bounds, larger};
 
 /// Children of a node.
@@ -13,9 +14,9 @@ pub const WIDE: usize = 8;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Node {
-    /// Bits of `f32`: the lower faces across x, y and z, the upper ones; then what each child is. The last row only makes the
-    /// node four cache lines, and any number of three bits a row.
-    rows: [[u32; WIDE]; 8],
+    /// The lower faces across x, y and z, the upper ones; then, in its bits, what each child is. The last row only makes the node
+    /// four cache lines, and any number of three bits a row.
+    rows: [[f32; WIDE]; 8],
 }
 
 /// Row of the upper faces across x.
@@ -96,7 +97,7 @@ impl Box4 {
 impl Node {
     /// Without children.
     pub fn empty() -> Node {
-        let mut node = Node { rows: [[0; WIDE]; 8] };
+        let mut node = Node { rows: [[0.0; WIDE]; 8] };
         (0..WIDE).for_each(|slot| node.set(slot, Box4::EMPTY, Child::NONE));
         node
     }
@@ -104,18 +105,18 @@ impl Node {
     /// Fills a slot.
     pub fn set(&mut self, slot: usize, b: Box4, child: Child) {
         for i in 0..3 {
-            self.rows[i][slot] = b.lo[i].to_bits();
-            self.rows[UPPER + i][slot] = b.hi[i].to_bits();
+            self.rows[i][slot] = b.lo[i];
+            self.rows[UPPER + i][slot] = b.hi[i];
         }
-        self.rows[CHILD][slot] = child.0;
+        self.rows[CHILD][slot] = f32::from_bits(child.0);
     }
 
     /// The box of a slot.
     pub fn box_of(&self, slot: usize) -> Box4 {
         let mut b = Box4::EMPTY;
         for i in 0..3 {
-            b.lo[i] = f32::from_bits(self.rows[i][slot]);
-            b.hi[i] = f32::from_bits(self.rows[UPPER + i][slot]);
+            b.lo[i] = self.rows[i][slot];
+            b.hi[i] = self.rows[UPPER + i][slot];
         }
         b
     }
@@ -123,46 +124,54 @@ impl Node {
     /// What a slot refers to.
     #[inline(always)]
     pub fn child(&self, slot: usize) -> Child {
-        Child(self.rows[CHILD][slot & (WIDE - 1)])
+        Child(self.rows[CHILD][slot & (WIDE - 1)].to_bits())
     }
 
-    /// Adds `offset` to the numbers of the children that are nodes.
-    pub fn renumber(&mut self, offset: usize) {
+    /// Adds to the numbers of the children that are nodes, and to the places of those that are leaves.
+    pub fn renumber(&mut self, nodes: usize, leaves: usize) {
         for slot in 0..WIDE {
             let child = self.child(slot);
-            if !child.is_leaf() {
-                self.rows[CHILD][slot] = Child::node(child.at() + offset).0;
-            }
+            let moved = match child.is_leaf() {
+                true if child == Child::NONE => child,
+                true => Child::leaf(child.range().start + leaves, child.range().len()),
+                false => Child::node(child.at() + nodes),
+            };
+            self.rows[CHILD][slot] = f32::from_bits(moved.0);
         }
+    }
+
+    /// Around all children.
+    pub fn around(&self) -> Box4 {
+        self.children().fold(Box4::EMPTY, |b, (slot, _)| b.union(self.box_of(slot)))
     }
 
     /// The slots that are used.
     pub fn children(&self) -> impl Iterator<Item = (usize, Child)> {
-        (0..WIDE).map(|slot| (slot, self.child(slot))).filter(|(slot, _)| self.rows[0][*slot] != EMPTY_FACE)
+        (0..WIDE).map(|slot| (slot, self.child(slot))).filter(|(slot, _)| self.rows[0][*slot] < f32::INFINITY)
     }
 
-    /// Where rays enter each of the eight boxes, and one bit for each box that they meet before `t_max`.
+    /// Where rays enter each of the eight boxes, the bits of what is in them, and one bit for each box that they meet before
+    /// `t_max`. `W` is a register of up to eight.
     #[inline(always)]
-    pub fn meet(&self, beam: &Beam, t_max: f32) -> ([f32; WIDE], u32) {
-        let (mut near, mut far) = ([0.0; WIDE], [t_max; WIDE]);
-        for i in 0..3 {
-            let (enter, leave) = (&self.rows[beam.near_row[i] & 7], &self.rows[beam.far_row[i] & 7]);
-            for k in 0..WIDE {
-                let t0 = (f32::from_bits(enter[k]) - beam.near_from[i]) * beam.near_inverse[i];
-                let t1 = (f32::from_bits(leave[k]) - beam.far_from[i]) * beam.far_inverse[i];
-                near[k] = if t0 > near[k] { t0 } else { near[k] };
-                far[k] = if t1 < far[k] { t1 } else { far[k] };
+    pub fn meet<W: Lane<Elem = f32>>(&self, beam: &Registers<W>, t_max: f32) -> ([f32; WIDE], [f32; WIDE], u32) {
+        let (mut nears, mut children, mut met) = ([0.0; WIDE], [0.0; WIDE], 0);
+        let t_max = W::splat(t_max as f64);
+        for k in 0..WIDE / W::WIDTH {
+            let (mut near, mut far) = (W::zero(), t_max);
+            for i in 0..3 {
+                let (enter, leave) = (&self.rows[beam.near_row[i] & 7], &self.rows[beam.far_row[i] & 7]);
+                let enter = (W::load(&enter[k * W::WIDTH..]) - beam.near_from[i]) * beam.near_inverse[i];
+                let leave = (W::load(&leave[k * W::WIDTH..]) - beam.far_from[i]) * beam.far_inverse[i];
+                (near, far) = (enter.max(near), leave.min(far));
             }
+            near.store(&mut nears[k * W::WIDTH..]);
+            // Fetched together with the faces: a wait for memory less.
+            W::load(&self.rows[CHILD][k * W::WIDTH..]).store(&mut children[k * W::WIDTH..]);
+            met |= near.le(far).bits() << (k * W::WIDTH);
         }
-        let mut met = 0;
-        for k in 0..WIDE {
-            met |= ((near[k] <= far[k]) as u32) << k;
-        }
-        (near, met)
+        (nears, children, met)
     }
 }
-
-const EMPTY_FACE: u32 = f32::INFINITY.to_bits();
 
 /// The tree's own units: p' = (p − origin)·scale. `scale` is a power of two that brings the largest coordinate to 1 or a
 /// little more, so nothing leaves the range of `f32`. The origin is the camera, near which numbers are fine, unless all the

@@ -6,7 +6,9 @@
 //! ray surely misses it.
 
 use super::node::{Child, Fit, Node, power_below};
+use crate::math::{Elem, Lane, Mask};
 use crate::render::bounds::{Bounds, larger, smaller};
+use std::mem::MaybeUninit;
 
 /// Rays in the tree's units.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,43 @@ pub struct Beam {
     tie: f64,
 }
 
+/// The same three numbers in every lane.
+#[inline(always)]
+fn splat3<W: Lane>(v: [f32; 3]) -> [W; 3] {
+    [W::splat(v[0] as f64), W::splat(v[1] as f64), W::splat(v[2] as f64)]
+}
+
+/// The numbers of a [`Beam`] that nodes are tested by, in registers.
+pub struct Registers<W> {
+    pub(super) near_row: [usize; 3],
+    pub(super) far_row: [usize; 3],
+    pub(super) near_from: [W; 3],
+    pub(super) near_inverse: [W; 3],
+    pub(super) far_from: [W; 3],
+    pub(super) far_inverse: [W; 3],
+}
+
+impl<W: Lane<Elem = f32>> Registers<W> {
+    #[inline(always)]
+    fn new(beam: &Beam) -> Self {
+        Registers {
+            near_row: beam.near_row,
+            far_row: beam.far_row,
+            near_from: splat3(beam.near_from),
+            near_inverse: splat3(beam.near_inverse),
+            far_from: splat3(beam.far_from),
+            far_inverse: splat3(beam.far_inverse),
+        }
+    }
+}
+
+/// Tests what is in the leaves of a tree. A trait and not a closure, so that it is surely inlined into what is compiled for
+/// lanes.
+pub trait Leaves {
+    /// Tests primitives, one to eight of them; gives the new `t_max`. The search ends when that isn't positive.
+    fn test(&mut self, ids: &[u32]) -> f64;
+}
+
 /// Origins and directions of rays: smallest and largest, by axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Spread {
@@ -34,6 +73,47 @@ pub struct Spread {
     pub o: [[f64; 2]; 3],
     /// Of directions.
     pub d: [[f64; 2]; 3],
+}
+
+/// More lanes than any register has.
+const LANES: usize = 16;
+
+/// The largest of a register's numbers.
+#[inline(always)]
+pub fn farthest<L: Lane>(t: L) -> f64 {
+    let mut all = [L::Elem::default(); LANES];
+    t.store(&mut all);
+    let mut most = f64::NEG_INFINITY;
+    for x in &all[..L::WIDTH] {
+        most = larger(x.to_f64(), most);
+    }
+    most
+}
+
+impl Spread {
+    /// Of the lanes whose `t_max` is positive.
+    #[inline(always)]
+    pub fn of<L: Lane>(o: [L; 3], d: [L; 3], t_max: L) -> Spread {
+        let alive = L::zero().lt(t_max).bits();
+        Spread {
+            o: [range(o[0], alive), range(o[1], alive), range(o[2], alive)],
+            d: [range(d[0], alive), range(d[1], alive), range(d[2], alive)],
+        }
+    }
+}
+
+/// Smallest and largest number in the lanes of `alive`.
+#[inline(always)]
+fn range<L: Lane>(v: L, alive: u32) -> [f64; 2] {
+    let mut all = [L::Elem::default(); LANES];
+    v.store(&mut all);
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (k, x) in all[..L::WIDTH].iter().enumerate() {
+        if alive >> k & 1 == 1 {
+            (least, most) = (smaller(x.to_f64(), least), larger(x.to_f64(), most));
+        }
+    }
+    [least, most]
 }
 
 /// Roundings of `f64` in a beam's own numbers, and some to spare.
@@ -74,7 +154,7 @@ impl Beam {
     /// The rays of `spread` before they meet the tree in `bounds`; `None` where all miss it. `u` is the unit roundoff of the
     /// kernels that will meet its primitives.
     #[inline(always)]
-    pub fn new(fit: &Fit, bounds: &Bounds, spread: &Spread, u: f64) -> Option<Beam> {
+    pub(super) fn new(fit: &Fit, bounds: &Bounds, spread: &Spread, u: f64) -> Option<Beam> {
         let Spread { o, d } = spread;
         let (mut reach, mut fastest) = (0.0, 0.0);
         for i in 0..3 {
@@ -148,11 +228,17 @@ impl Beam {
 
 /// Nodes and leaves that wait, nearest last.
 struct Stack {
-    entries: [u64; ROOM],
+    /// Only the first `len` hold anything: to clear three kilobytes would take longer than many a ray's whole search.
+    entries: [MaybeUninit<u64>; ROOM],
     len: usize,
 }
 
 impl Stack {
+    #[inline(always)]
+    fn new() -> Stack {
+        Stack { entries: [const { MaybeUninit::uninit() }; ROOM], len: 0 }
+    }
+
     /// Puts `entry` among those from `base` on, in its place.
     #[inline(always)]
     fn insert(&mut self, entry: u64, base: usize) {
@@ -160,18 +246,27 @@ impl Stack {
         if at >= ROOM {
             return; // no tree is that deep
         }
-        while at > base && self.entries[at - 1] < entry {
-            self.entries[at] = self.entries[at - 1];
-            at -= 1;
+        // SAFETY: `at` is at most the old `len` and below `ROOM`; all entries below the old `len` were written by this function,
+        // which alone makes `len` grow, by one, after it wrote all up to there.
+        unsafe {
+            while at > base {
+                let below = self.entries.get_unchecked(at - 1).assume_init();
+                if below >= entry {
+                    break;
+                }
+                self.entries.get_unchecked_mut(at).write(below);
+                at -= 1;
+            }
+            self.entries.get_unchecked_mut(at).write(entry);
         }
-        self.entries[at] = entry;
         self.len += 1;
     }
 
     #[inline(always)]
     fn pop(&mut self) -> Option<u64> {
         self.len = self.len.checked_sub(1)?;
-        self.entries.get(self.len).copied()
+        // SAFETY: `len` was larger than this index, so `insert` wrote it.
+        Some(unsafe { self.entries.get_unchecked(self.len).assume_init() })
     }
 }
 
@@ -185,25 +280,26 @@ fn entry(near: f32, child: Child) -> u64 {
     (near.to_bits() as u64) << 32 | child.0 as u64
 }
 
-/// Calls `test` for every leaf whose box the rays of `beam` meet before `t_max`, nearer ones first; it gives the new `t_max`.
+/// Tests every leaf whose box the rays of `beam` meet before `t_max`, nearer ones first.
 #[inline(always)]
-pub fn walk(nodes: &[Node], beam: &Beam, mut t_max: f32, mut test: impl FnMut(Child) -> f32) {
-    let mut stack = Stack { entries: [0; ROOM], len: 0 };
+pub fn walk<W: Lane<Elem = f32>>(nodes: &[Node], ids: &[u32], beam: &Beam, t_max: f64, leaves: &mut impl Leaves) {
+    let mut stack = Stack::new();
     let mut child = Child::node(0);
+    let registers = Registers::<W>::new(beam);
+    let mut t_max = beam.reach(t_max);
     loop {
         if child.is_leaf() {
-            t_max = test(child);
+            t_max = beam.reach(leaves.test(ids.get(child.range()).unwrap_or_default()));
         } else if let Some(node) = nodes.get(child.at()) {
-            let (near, mut met) = node.meet(beam, t_max);
+            let (near, children, mut met) = node.meet(&registers, t_max);
             if met != 0 {
-                let next = |met: &mut u32| {
-                    let k = met.trailing_zeros() as usize & 7;
-                    *met &= *met - 1;
-                    entry(near[k], node.child(k))
-                };
-                let (mut nearest, base) = (next(&mut met), stack.len);
+                let k = met.trailing_zeros() as usize & 7;
+                met &= met - 1;
+                let (mut nearest, base) = (entry(near[k], Child(children[k].to_bits())), stack.len);
                 while met != 0 {
-                    let other = next(&mut met);
+                    let k = met.trailing_zeros() as usize & 7;
+                    met &= met - 1;
+                    let other = entry(near[k], Child(children[k].to_bits()));
                     let (a, b) = if other < nearest { (other, nearest) } else { (nearest, other) };
                     nearest = a;
                     stack.insert(b, base);
