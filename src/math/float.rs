@@ -104,10 +104,6 @@ macro_rules! scalar {
                     dst[0] = self;
                 }
             }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                f()
-            }
         }
     };
 }

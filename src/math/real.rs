@@ -81,6 +81,13 @@ pub trait Real:
         f: impl FnMut([Self::Single; N]) -> [Self::Single; M],
     ) -> [Self; M];
 
+    /// `f`, in a function of its own that is compiled for the instructions of this scalar. What is over lanes and isn't inlined
+    /// into such a function would call every operation.
+    #[inline(always)]
+    fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+        f()
+    }
+
     /// `rough`, but what `f` makes of `given` in [`Fine`](Real::Fine) in the lanes of `doubt`. Scalars that are themselves more
     /// than a machine number keep `rough`.
     #[inline(always)]
@@ -181,9 +188,6 @@ pub trait Lane: Real<Single = f64> {
     /// Packs the lanes that `m` selects to the front of `dst`; lanes after them may be overwritten, so `dst` must hold
     /// [`WIDTH`](Lane::WIDTH) values.
     fn compress(self, m: Self::Mask, dst: &mut [Self::Elem]);
-    /// `f`, in a function of its own that is compiled for the instructions of this lane. What is over lanes and isn't inlined
-    /// into such a function would call every operation.
-    fn vectorize<T>(f: impl FnOnce() -> T) -> T;
 }
 
 /// The mask of a single value.
@@ -232,18 +236,50 @@ pub const fn gamma(n: f64, unit_roundoff: f64) -> f64 {
     n * unit_roundoff / (1.0 - n * unit_roundoff)
 }
 
-/// The three values of `f`. In place of an array's `map`, so that it is surely inlined: kernels are compiled for more
-/// instructions than the standard library, whose functions would call the slow forms.
-#[inline(always)]
-pub fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
-    [f(0), f(1), f(2)]
+/// The three values of an expression for i = 0, 1, 2: `three!(i => a[i] + b[i])`. A macro and not a function of a closure, so that
+/// it is surely inlined: kernels are compiled for more instructions than what they call, and a closure that isn't inlined
+/// would call every operation.
+macro_rules! three {
+    ($i:ident => $value:expr) => {
+        [
+            {
+                let $i = 0usize;
+                $value
+            },
+            {
+                let $i = 1usize;
+                $value
+            },
+            {
+                let $i = 2usize;
+                $value
+            },
+        ]
+    };
 }
+pub(crate) use three;
 
-/// `f` of each of three values; see [`three`].
-#[inline(always)]
-pub fn each3<T: Copy, U>(v: [T; 3], f: impl Fn(T) -> U) -> [U; 3] {
-    [f(v[0]), f(v[1]), f(v[2])]
+/// The expression for each of three values: `each3!(v, x => x.abs())`; see [`three`].
+macro_rules! each3 {
+    ($v:expr, $x:pat => $value:expr) => {{
+        let [a, b, c] = $v;
+        [
+            {
+                let $x = a;
+                $value
+            },
+            {
+                let $x = b;
+                $value
+            },
+            {
+                let $x = c;
+                $value
+            },
+        ]
+    }};
 }
+pub(crate) use each3;
 
 /// Dot product of 3-vectors; fused, in a fixed order.
 #[inline(always)]
@@ -272,7 +308,7 @@ pub fn minus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 /// A constant 3-vector in every lane.
 #[inline(always)]
 pub fn splat3<R: Real>(v: [f64; 3]) -> [R; 3] {
-    each3(v, R::splat)
+    each3!(v, x => R::splat(x))
 }
 
 /// `a` where `m`, else `b`, for 3-vectors.

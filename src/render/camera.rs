@@ -66,20 +66,39 @@ fn exact(v: DVec3) -> [f64; 3] {
 }
 
 impl PixelGrid<'_> {
+    /// How far right the picture's column `x` looks.
+    #[inline(always)]
+    pub fn across<R: Real>(&self, x: R) -> R {
+        (x - R::splat(self.half_width)) * R::splat(self.step)
+    }
+
+    /// How far up the picture's row `y` looks.
+    #[inline(always)]
+    fn up<R: Real>(&self, y: R) -> R {
+        (R::splat(self.half_height) - y) * R::splat(self.step)
+    }
+
+    /// What rays through row `y` have in common: (`right`, `base`) such that one that looks `sx` to the right (see
+    /// [`across`](PixelGrid::across)) is right·sx + base, its direction, or its origin where rays are parallel.
+    #[inline(always)]
+    pub fn row(&self, y: f64) -> ([f64; 3], [f64; 3]) {
+        let (c, sy) = (self.camera, self.up(y));
+        let from = if c.parallel { [0.0; 3] } else { c.forward };
+        (c.right, three!(i => c.up[i].mul_add(sy, from[i])))
+    }
+
+    /// The direction that all rays have where they are parallel.
+    pub fn forward(&self) -> [f64; 3] {
+        self.camera.forward
+    }
+
     /// Origin and direction of the ray through the point (x, y) of the picture, in pixels from its upper left corner.
     #[inline(always)]
     pub fn ray<R: Real>(&self, x: R, y: R) -> ([R; 3], [R; 3]) {
-        let step = R::splat(self.step);
-        let (sx, sy) = ((x - R::splat(self.half_width)) * step, (R::splat(self.half_height) - y) * step);
-        let c = self.camera;
-        let across = |base: fn(&CameraFrame, usize) -> f64| {
-            three(|i| R::splat(c.right[i]).mul_add(sx, R::splat(c.up[i]).mul_add(sy, R::splat(base(c, i)))))
-        };
-        if c.parallel {
-            (across(|_, _| 0.0), each3(c.forward, R::splat))
-        } else {
-            ([R::zero(); 3], across(|c, i| c.forward[i]))
-        }
+        let (c, sx, sy) = (self.camera, self.across(x), self.up(y));
+        let from = if c.parallel { [0.0; 3] } else { c.forward };
+        let to = three!(i => R::splat(c.right[i]).mul_add(sx, R::splat(c.up[i]).mul_add(sy, R::splat(from[i]))));
+        if c.parallel { (to, each3!(c.forward, x => R::splat(x))) } else { ([R::zero(); 3], to) }
     }
 
     /// The region that rays through the rectangle from (x0, y0) to (x1, y1) stay in.

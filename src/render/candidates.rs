@@ -1,12 +1,13 @@
 //! What a batch of rays may meet: found once for all of them, so that each tests only what is near.
 
-use super::batch::RayBatch;
-use super::bounds::{Bounds, smaller};
-use super::cull::{bounds_of, margin};
+use super::batch::{RayBatch, load3};
+use super::bounds::Bounds;
+use super::cull::margin;
 use super::footprint::Beam;
+use super::span::{Span, least, total};
 use super::world::World;
-use crate::math::real::{each3, three};
-use crate::math::{Elem, Lane};
+use crate::math::Lane;
+use crate::math::real::{Mask, dot, each3, splat3, three};
 
 /// Longest list of candidates that every ray of a batch tests in turn; beyond it each ray goes through the tree. Measured over
 /// the examples, one ray at a time: 3 to 6 are equally good, 12 costs a fifth more, 24 to 48 up to half.
@@ -60,19 +61,35 @@ impl Candidates {
 #[inline(always)]
 pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &mut Candidates) -> Beam {
     let margin = margin(L::UNIT_ROUNDOFF);
-    let origins = bounds_of(&rays.o, rays.len);
-    let unit = |i: usize| -> [f64; 3] {
-        let d = three(|c| rays.d[c][i].to_f64());
-        let len = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-        each3(d, |x| x / len)
-    };
-    let sum = (0..rays.len).map(unit).fold([0.0; 3], |s, d| [s[0] + d[0], s[1] + d[1], s[2] + d[2]]);
+    let mut origins = Span::new();
+    let mut sum = [L::zero(); 3];
+    for g in (0..rays.len).step_by(L::WIDTH) {
+        let live = L::Mask::first((rays.len - g).min(L::WIDTH));
+        origins.hold(live, load3::<L>(&rays.o, g));
+        let d = load3::<L>(&rays.d, g);
+        let inverse = L::one() / dot(d, d).sqrt();
+        sum = three!(c => sum[c] + L::select(live, d[c] * inverse, L::zero()));
+    }
+    let sum = each3!(sum, x => total(x));
     let len = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
-    let axis = sum.map(|x| x / len);
-    let cosine = |d: [f64; 3]| d[0] * axis[0] + d[1] * axis[1] + d[2] * axis[2];
-    let cos = (0..rays.len).map(|i| cosine(unit(i))).fold(1.0, smaller);
-    let beam = Beam { origins, axis, cos };
+    let axis = each3!(sum, x => x / len);
+    let along: [L; 3] = splat3(axis);
+    let mut cos = L::one();
+    for g in (0..rays.len).step_by(L::WIDTH) {
+        let live = L::Mask::first((rays.len - g).min(L::WIDTH));
+        let d = load3::<L>(&rays.d, g);
+        let cosine = dot(d, along) / dot(d, d).sqrt();
+        // A NaN, of rays whose middle is no direction, is kept: it stands for all directions.
+        cos = L::select(live & !cos.le(cosine), cosine, cos);
+    }
+    let origins = origins.bounds();
+    let beam = Beam { origins, axis, cos: least(cos) };
     let cone = beam.cone(margin);
-    out.gather(world, |b| cone.may_meet(b), |n, offset| cone.may_reach(&origins, n, offset));
+    out.gather(
+        world,
+        #[inline(always)]
+        |b| cone.may_meet(b),
+        |n, offset| cone.may_reach(&origins, n, offset),
+    );
     beam
 }

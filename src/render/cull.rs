@@ -1,7 +1,7 @@
 //! Regions of space that a batch of rays stays in: what lies outside needs no test. Every test errs on the side of keeping, so
 //! culling never changes a pixel.
 
-use super::bounds::{Bounds, larger, smaller};
+use super::bounds::{Bounds, larger};
 
 /// Relative margin of every comparison here: 2^-40, thousands of roundings of `f64`, and nothing to the sizes of boxes.
 const MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
@@ -178,18 +178,6 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
-}
-
-/// The box of a batch's points, from their columns.
-pub fn bounds_of<E: crate::math::Elem>(p: &[Box<[E]>; 3], n: usize) -> Bounds {
-    let mut b = Bounds::EMPTY;
-    for (i, column) in p.iter().enumerate() {
-        for x in &column[..n] {
-            b.lo[i] = smaller(x.to_f64(), b.lo[i]);
-            b.hi[i] = larger(x.to_f64(), b.hi[i]);
-        }
-    }
-    b
 }
 
 #[cfg(test)]

@@ -66,13 +66,14 @@ impl Frame {
     /// The ray in this frame. `AT_EYE` says that every origin is exactly 0, which spares the subtraction.
     #[inline(always)]
     pub fn localize<R: Real, const AT_EYE: bool>(&self, maps: &[LinearMap], o: [R; 3], d: [R; 3]) -> LocalRay<R> {
-        let f: [(R, R); 3] = three(|i| {
+        let f: [(R, R); 3] = three!(i => {
             let (c, c_lo) = (R::splat(-self.centre[i]), R::splat(-self.centre_lo[i]));
             if AT_EYE {
-                return (c, c_lo);
+                (c, c_lo)
+            } else {
+                let (hi, lo) = o[i].two_sum(c);
+                (hi, lo + c_lo)
             }
-            let (hi, lo) = o[i].two_sum(c);
-            (hi, lo + c_lo)
         });
         let d_lo = [R::zero(); 3];
         let renamed = |a: usize, b: usize, c: usize| LocalRay {
@@ -87,7 +88,7 @@ impl Frame {
             Axes::Cyclic(_) => renamed(2, 0, 1),
             Axes::Linear(m) => {
                 let rows = &maps[m as usize].local_from_world;
-                let (from, from_lo) = (each3(f, |x| x.0), each3(f, |x| x.1));
+                let (from, from_lo) = (each3!(f, x => x.0), each3!(f, x => x.1));
                 let mut out = LocalRay { o: d, o_lo: d, d, d_lo };
                 for (r, row) in rows.iter().enumerate() {
                     let a = splat3::<R>(*row);
@@ -104,7 +105,7 @@ impl Frame {
     #[inline(always)]
     pub fn point_to_world<R: Real>(&self, maps: &[LinearMap], p: [R; 3]) -> [R; 3] {
         let v = self.vector_to_world(maps, p);
-        three(|i| v[i] + R::splat(self.centre[i]))
+        three!(i => v[i] + R::splat(self.centre[i]))
     }
 
     /// A local vector in the world.
@@ -114,7 +115,7 @@ impl Frame {
             Axes::Cyclic(0) => v,
             Axes::Cyclic(1) => [v[2], v[0], v[1]],
             Axes::Cyclic(_) => [v[1], v[2], v[0]],
-            Axes::Linear(m) => each3(maps[m as usize].world_from_local, |row| dot(each3(row, R::splat), v)),
+            Axes::Linear(m) => each3!(maps[m as usize].world_from_local, row => dot(each3!(row, x => R::splat(x)), v)),
         }
     }
 
@@ -126,9 +127,9 @@ impl Frame {
             Axes::Linear(m) if maps[m as usize].exchange => self.vector_to_world(maps, n),
             Axes::Linear(m) => {
                 let a = &maps[m as usize].local_from_world;
-                let w: [R; 3] = three(|j| dot(three(|i| R::splat(a[i][j])), n));
+                let w: [R; 3] = three!(j => dot(three!(i => R::splat(a[i][j])), n));
                 let scale = R::one() / dot(w, w).sqrt();
-                each3(w, |x| x * scale)
+                each3!(w, x => x * scale)
             }
         }
     }
@@ -140,15 +141,15 @@ impl Frame {
         let u = R::UNIT_ROUNDOFF;
         // Of the large part: three products of the map, the sum with the centre, the addition that follows, one to spare.
         let gamma = R::splat(6.0 * u);
-        let size = three(|i| gamma.mul_add(p[i].abs(), error[i]));
+        let size = three!(i => gamma.mul_add(p[i].abs(), error[i]));
         let spread = match self.axes {
             Axes::Cyclic(_) => self.vector_to_world(maps, size),
             Axes::Linear(m) => {
-                each3(maps[m as usize].world_from_local, |row| dot(each3(row, |x| R::splat(x.abs())), size))
+                each3!(maps[m as usize].world_from_local, row => dot(each3!(row, x => R::splat(x.abs())), size))
             }
         };
         // Of the centre: its low part, the sum with it, the addition that follows.
-        three(|i| spread[i] + R::splat(3.0 * u * self.centre[i].abs()))
+        three!(i => spread[i] + R::splat(3.0 * u * self.centre[i].abs()))
     }
 }
 

@@ -74,3 +74,83 @@ impl Bvh {
         Some(to.nodes[place].around())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::hash::KeyedHash;
+
+    fn random(i: u64, k: u64) -> f64 {
+        KeyedHash::new().with(i).with(k).unit()
+    }
+
+    fn boxed(id: u32, seed: u64) -> (u32, Bounds) {
+        (id, Bounds::around([0, 1, 2].map(|k| random(seed, k) * 100.0), [1.0; 3]))
+    }
+
+    /// Leaves hold their primitives, each of which is there once, and boxes all that lies below them: a search through them
+    /// finds what a plain one does.
+    fn check(tree: &Bvh, expected: &mut [(u32, Bounds)]) {
+        let mut leaves: Vec<(u32, Bounds)> = tree.leaves().collect();
+        leaves.sort_by_key(|l| l.0);
+        expected.sort_by_key(|l| l.0);
+        assert!(leaves.iter().map(|l| l.0).eq(expected.iter().map(|l| l.0)));
+        assert!(leaves.iter().zip(&*expected).all(|(leaf, own)| leaf.1.union(own.1) == leaf.1));
+        for k in 0..50 {
+            let region = Bounds::around([0, 1, 2].map(|c| random(k, 90 + c) * 100.0), [15.0; 3]);
+            let mut found = Vec::new();
+            tree.gather(
+                |b| b.overlaps(&region),
+                |id| {
+                    found.push(id);
+                    true
+                },
+            );
+            found.sort();
+            let met: Vec<u32> = expected.iter().filter(|l| l.1.overlaps(&region)).map(|l| l.0).collect();
+            assert_eq!(found, met);
+        }
+    }
+
+    #[test]
+    fn a_grafted_tree_holds_what_a_new_one_would() {
+        let mut expected: Vec<(u32, Bounds)> = (0..300).map(|i| boxed(i, i as u64)).collect();
+        let mut tree = Bvh::build(expected.clone());
+        let (mut grafted, mut next_seed) = (0, 1000);
+        for step in 0..60u64 {
+            // Some go, some come, and the numbers of all move.
+            let n = expected.len();
+            let gone = |id: u32| random(step, 500 + id as u64) < 0.01 * (step % 4) as f64;
+            let mut kept: Vec<u32> = (0..n as u32).filter(|&id| !gone(id)).collect();
+            kept.sort_by_key(|&id| KeyedHash::new().with(step).with(id as u64).bits());
+            let mut renumbered = vec![u32::MAX; n];
+            kept.iter().zip(0..).for_each(|(&old, new)| renumbered[old as usize] = new);
+            let come = (step % 3) as u32 * 2;
+            let added: Vec<_> = (0..come).map(|k| boxed(kept.len() as u32 + k, next_seed + k as u64)).collect();
+            next_seed += come as u64;
+            expected = expected
+                .iter()
+                .filter(|l| renumbered[l.0 as usize] != u32::MAX)
+                .map(|l| (renumbered[l.0 as usize], l.1))
+                .chain(added.iter().copied())
+                .collect();
+            tree = match tree.grafted(&renumbered, added) {
+                Some(tree) => {
+                    grafted += 1;
+                    tree
+                }
+                None => Bvh::build(expected.clone()),
+            };
+            check(&tree, &mut expected);
+        }
+        assert!((40..60).contains(&grafted), "{grafted}: often, but not for ever");
+    }
+
+    #[test]
+    fn of_nothing_and_to_nothing() {
+        let three: Vec<_> = (0..30).map(|i| boxed(i, i as u64)).collect();
+        assert!(Bvh::default().grafted(&[], three.clone()).is_none());
+        let tree = Bvh::build(three);
+        assert!(tree.grafted(&[u32::MAX; 30], Vec::new()).is_none(), "better built anew");
+    }
+}

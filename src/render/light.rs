@@ -7,7 +7,7 @@ use super::shape::Visit;
 use super::surface_pattern::PatternFrame;
 use super::touch::ButAtTheEnd;
 use super::world::World;
-use crate::math::real::{Mask, each3, splat3, three};
+use crate::math::real::{Mask, select3, splat3, three};
 use crate::math::{Lane, Real};
 use crate::render::pattern::Rows;
 
@@ -18,15 +18,15 @@ pub struct Shadow {
     spaces: Vec<Rows>,
 }
 
-/// Rays from points of a surface to one light.
+/// Rays from points of surfaces to one light.
 #[derive(Clone, Copy)]
 pub struct ShadowRays<'w, L: Lane> {
-    /// The primitive that they start on.
-    pub source: u32,
-    /// The part of it.
+    /// The surfaces that they start on.
+    pub source: L,
+    /// The parts of them.
     pub part: L,
-    /// Lanes that leave it to the outside.
-    pub outward: L::Mask,
+    /// 1 in lanes that leave them to the outside.
+    pub outward: L,
     /// Where they start.
     pub o: [L; 3],
     /// Towards the light, of unit length.
@@ -38,25 +38,33 @@ pub struct ShadowRays<'w, L: Lane> {
 }
 
 impl<L: Lane> ShadowRays<'_, L> {
-    /// Visits the crossings with primitive `k` that lie between start and light.
+    /// The lanes that start on surface `k` and surely don't meet it again.
+    #[inline(always)]
+    fn left_for_good(&self, world: &World, k: u32) -> L::Mask {
+        let never = world.primitive(k).kind.is_left_for_good();
+        L::Mask::splat(never) & self.source.same(L::splat(k as f64)) & self.outward.same(L::one())
+    }
+
+    /// Visits the crossings with surface `k`.
     #[inline(always)]
     fn crossings(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
-        if self.touched.contains(&k) {
-            return self.crossings_but_the_light(world, k, visit);
-        }
-        world.crossings::<L, false>(k, (self.o, self.l), self.own(k), visit);
+        let own = Own::of(self.source.same(L::splat(k as f64)), self.part, self.outward.same(L::one()));
+        world.crossings::<L, false>(k, (self.o, self.l), own, visit);
     }
 
-    #[cold]
-    #[inline(never)]
-    fn crossings_but_the_light(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
-        let mut visit = ButAtTheEnd::new(self.distance, visit);
-        world.crossings::<L, false>(k, (self.o, self.l), self.own(k), &mut visit);
-    }
-
+    /// The crossings with surface `k` that lie between start and light; in a function of its own, for it is seldom asked.
     #[inline(always)]
-    fn own(&self, k: u32) -> Option<Own<L>> {
-        Some(Own { here: L::Mask::splat(k == self.source), part: self.part, outward: self.outward })
+    fn met(&self, world: &World, k: u32) -> Met<L> {
+        L::vectorize(
+            #[inline(always)]
+            || {
+                let nothing = (L::zero(), L::zero(), L::Mask::splat(false));
+                let mut met = Met { distance: self.distance, crossings: [nothing; 4], n: 0 };
+                let mut visit = ButAtTheEnd::new(self.distance, self.touched.contains(&k), &mut met);
+                self.crossings(world, k, &mut visit);
+                met
+            },
+        )
     }
 }
 
@@ -72,57 +80,62 @@ pub fn occlusion<L: Lane>(
     scratch: &mut Shadow,
     recorder: &mut Recorder,
 ) -> [L; 3] {
-    let (o, l, distance) = (rays.o, rays.l, rays.distance);
-    let mut seen = [L::one(); 3];
-    // Opaque ones first: they need no order.
+    let zero = [L::zero(); 3];
     let mut open = Open { mask: active, rays };
+    // Opaque ones first: they need no order.
     scratch.transparent.clear();
-    for &k in &occluders.ids {
-        open.test(world, k, &mut scratch.transparent, recorder);
-        if !open.mask.any() {
-            return [L::zero(); 3];
-        }
+    if !occluders.ids.is_empty() {
+        open.test_all(world, &occluders.ids, &mut scratch.transparent, recorder);
     }
-    if occluders.tree {
-        world.bvh.traverse(o, l, open.reach(), |k| {
-            open.test(world, k, &mut scratch.transparent, recorder);
-            open.reach()
-        });
+    if occluders.tree && open.mask.any() {
+        open.through_tree(world, &mut scratch.transparent, recorder);
     }
-    let open = open.mask;
-    let zero = L::zero();
-    seen = each3(seen, |x| L::select(open, x, zero));
-    if scratch.transparent.is_empty() || !open.any() {
+    let seen = select3(open.mask, [L::one(); 3], zero);
+    if scratch.transparent.is_empty() || !open.mask.any() {
         return seen;
     }
-    scratch.transparent.sort_unstable();
-    for &k in &scratch.transparent {
-        if recorder.is_on() {
-            recorder.shaded(k); // met or not: seldom more than a few
-        }
-        let primitive = world.primitive(k);
-        match world.constant_transmission(k) {
-            Some(factor) => {
-                let mut dimmed = Dimmed { distance, factor: splat3(factor), seen };
-                rays.crossings(world, k, &mut dimmed);
-                seen = dimmed.seen;
-            }
-            None => {
-                let mut met = Met { distance, crossings: [(zero, zero, L::Mask::splat(false)); 4], n: 0 };
-                rays.crossings(world, k, &mut met);
-                let frame = PatternFrame::new(world, primitive, world.surfacing(k), &mut scratch.spaces);
+    dimmed(world, rays, seen, scratch, recorder)
+}
+
+/// What the transparent surfaces leave of `seen`.
+#[inline(always)]
+fn dimmed<L: Lane>(
+    world: &World,
+    rays: &ShadowRays<'_, L>,
+    seen: [L; 3],
+    scratch: &mut Shadow,
+    recorder: &mut Recorder,
+) -> [L; 3] {
+    L::vectorize(
+        #[inline(always)]
+        || {
+            let mut seen = seen;
+            scratch.transparent.sort_unstable();
+            for &k in &scratch.transparent {
+                if recorder.is_on() {
+                    recorder.shaded(k); // met or not: seldom more than a few
+                }
+                let met = rays.met(world, k);
+                let constant = world.constant_transmission(k);
+                let frame = PatternFrame::new(world, world.primitive(k), world.surfacing(k), &mut scratch.spaces);
                 for (t, part, m) in met.crossings.into_iter().take(met.n) {
-                    if m.any() {
-                        let surface = world.surface::<L, false>(k, (o, l), (t, part));
-                        let at = frame.point(&scratch.spaces, surface.local, surface.n);
-                        let factor = frame.transmission(world, &at);
-                        seen = three(|c| L::select(m, seen[c] * factor[c], seen[c]));
+                    if !m.any() {
+                        continue;
                     }
+                    let factor = match constant {
+                        Some(factor) => splat3(factor),
+                        None => {
+                            let surface = world.surface::<L, false>(k, (rays.o, rays.l), (t, part));
+                            let at = frame.point(&scratch.spaces, surface.local, surface.n);
+                            frame.transmission(world, &at)
+                        }
+                    };
+                    seen = select3(m, three!(c => seen[c] * factor[c]), seen);
                 }
             }
-        }
-    }
-    seen
+            seen
+        },
+    )
 }
 
 /// Shadow rays that nothing opaque has stopped yet.
@@ -132,21 +145,64 @@ struct Open<'r, L: Lane> {
 }
 
 impl<L: Lane> Open<'_, L> {
-    /// Tests primitive `k`, or puts it aside where it is transparent.
+    /// Tests surfaces until nothing is open, and puts transparent ones aside; in a function of its own, for kernels are large.
     #[inline(always)]
-    fn test(&mut self, world: &World, k: u32, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
-        match world.constant_transmission(k) {
-            Some([0.0, 0.0, 0.0]) => {
-                let mut met = Blocked { distance: self.rays.distance, blocked: L::Mask::splat(false) };
-                self.rays.crossings(world, k, &mut met);
-                if recorder.is_on() && (self.mask & met.blocked).any() {
-                    recorder.shaded(k);
+    fn test_all(&mut self, world: &World, ids: &[u32], transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+        L::vectorize(
+            #[inline(always)]
+            || {
+                for &k in ids {
+                    if !(self.mask & !self.rays.left_for_good(world, k)).any() {
+                        continue;
+                    }
+                    match world.constant_transmission(k) {
+                        Some([0.0, 0.0, 0.0]) => self.test(world, k, recorder),
+                        Some([1.0, 1.0, 1.0]) => {}
+                        _ => transparent.push(k),
+                    }
+                    if !self.mask.any() {
+                        return;
+                    }
                 }
-                self.mask = self.mask & !met.blocked;
-            }
-            Some([1.0, 1.0, 1.0]) => {}
-            _ => transparent.push(k),
+            },
+        );
+    }
+
+    /// Tests opaque surface `k`.
+    #[inline(always)]
+    fn test(&mut self, world: &World, k: u32, recorder: &mut Recorder) {
+        let blocked = if self.rays.touched.contains(&k) {
+            let met = self.rays.met(world, k);
+            met.crossings[..met.n].iter().fold(L::Mask::splat(false), |any, c| any | c.2)
+        } else {
+            let mut met = Blocked { distance: self.rays.distance, blocked: L::Mask::splat(false) };
+            self.rays.crossings(world, k, &mut met);
+            met.blocked
+        };
+        if recorder.is_on() && (self.mask & blocked).any() {
+            recorder.shaded(k);
         }
+        self.mask = self.mask & !blocked;
+    }
+
+    #[inline(always)]
+    fn through_tree(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+        L::vectorize(
+            #[inline(always)]
+            || {
+                let reach = self.reach();
+                world.bvh.traverse(
+                    self.rays.o,
+                    self.rays.l,
+                    reach,
+                    #[inline(always)]
+                    |k| {
+                        self.test_all(world, &[k], transparent, recorder);
+                        self.reach()
+                    },
+                );
+            },
+        );
     }
 
     /// How far each ray still has to be followed.
@@ -166,21 +222,6 @@ impl<R: Real> Visit<R> for Blocked<R> {
     #[inline(always)]
     fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
         self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));
-    }
-}
-
-/// Dims by the same factor at every crossing.
-struct Dimmed<R> {
-    distance: R,
-    factor: [R; 3],
-    seen: [R; 3],
-}
-
-impl<R: Real> Visit<R> for Dimmed<R> {
-    #[inline(always)]
-    fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
-        let m = valid & R::zero().lt(t) & t.lt(self.distance);
-        self.seen = three(|c| R::select(m, self.seen[c] * self.factor[c], self.seen[c]));
     }
 }
 

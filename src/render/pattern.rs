@@ -124,16 +124,25 @@ pub struct PatternPoint<'a, R> {
 /// The image of a point.
 #[inline(always)]
 pub fn apply<R: Real>(rows: &Rows, p: [R; 3]) -> [R; 3] {
-    each3(*rows, |[x, y, z, w]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
+    each3!(*rows, [x, y, z, w] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
 }
 
+#[inline(always)]
 fn apply_linear<R: Real>(rows: &[[f64; 3]; 3], p: [R; 3]) -> [R; 3] {
-    each3(*rows, |[x, y, z]| (R::splat(x) * p[0] + R::splat(y) * p[1]) + R::splat(z) * p[2])
+    each3!(*rows, [x, y, z] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + R::splat(z) * p[2])
 }
 
 impl PatternTable {
     /// The value of pattern `id`. Recursion is as deep as patterns nest, which the language limits.
     pub fn eval<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+        R::vectorize(
+            #[inline(always)]
+            || self.eval_here(id, at),
+        )
+    }
+
+    #[inline(always)]
+    fn eval_here<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
         let p = at.p;
         match &self.nodes[id as usize] {
             PatternNode::Constant(c) => splat3(*c),
@@ -200,24 +209,26 @@ impl PatternTable {
             }
             PatternNode::Add(a, b) => {
                 let (x, y) = (self.eval(*a, at), self.eval(*b, at));
-                three(|i| x[i] + y[i])
+                three!(i => x[i] + y[i])
             }
             PatternNode::Multiply(a, b) => {
                 let (x, y) = (self.eval(*a, at), self.eval(*b, at));
-                three(|i| x[i] * y[i])
+                three!(i => x[i] * y[i])
             }
             PatternNode::Within(child, least, most) => {
-                each3(self.eval(*child, at), |x: R| x.max(R::splat(*least)).min(R::splat(*most)))
+                each3!(self.eval(*child, at), x => x.max(R::splat(*least)).min(R::splat(*most)))
             }
         }
     }
 
+    #[inline(always)]
     fn by_parity<R: Lane>(&self, a: u32, b: u32, n: R, at: &PatternPoint<'_, R>) -> [R; 3] {
         let half = n * R::splat(0.5);
         self.choose(half.floor().same(half), a, b, at)
     }
 
     /// `a` where `m`, else `b`; what no lane needs isn't evaluated.
+    #[inline(always)]
     fn choose<R: Lane>(&self, m: R::Mask, a: u32, b: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
         if !m.any() {
             self.eval(b, at)
@@ -228,11 +239,13 @@ impl PatternTable {
         }
     }
 
+    #[inline(always)]
     fn lerp<R: Lane>(&self, a: u32, b: u32, s: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         let (a, b) = (self.eval(a, at), self.eval(b, at));
-        three(|i| (R::one() - s[i]) * a[i] + s[i] * b[i])
+        three!(i => (R::one() - s[i]) * a[i] + s[i] * b[i])
     }
 
+    #[inline(always)]
     fn blend<R: Lane>(&self, stops: &[u32], by: R, at: &PatternPoint<'_, R>) -> [R; 3] {
         let last = stops.len() - 1;
         let x = clamp01(by) * R::splat(last as f64);
@@ -244,13 +257,14 @@ impl PatternTable {
                 break;
             }
             let (s, c) = (s.min(R::one()), self.eval(stop, at));
-            out = select3(here, three(|i| (R::one() - s) * out[i] + s * c[i]), out);
+            out = select3(here, three!(i => (R::one() - s) * out[i] + s * c[i]), out);
         }
         out
     }
 }
 
 /// `x` between 0 and 1; 0 for what isn't a number, as noise is where a point is too far away for its cell to have one.
+#[inline(always)]
 fn clamp01<R: Real>(x: R) -> R {
     x.max(R::zero()).min(R::one())
 }

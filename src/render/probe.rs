@@ -5,10 +5,10 @@ use super::candidates::Candidates;
 use super::footprint::Recorder;
 use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::Slot;
+use super::nearest::nearest;
 use super::options::{Options, Probe};
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::PatternFrame;
-use super::tracer::nearest;
 use super::world::{PointLight, World};
 use crate::math::real::{Bool, dot, minus, scaled};
 
@@ -49,8 +49,8 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
         if !(dot(normal, l) > 0.0) {
             return [0.0; 3];
         }
-        let outward = Bool(towards > 0.0);
-        let rays = ShadowRays { source: id, part, outward, o: from, l, distance, touched: &light.touched };
+        let outward = if towards > 0.0 { 1.0 } else { 0.0 };
+        let rays = ShadowRays { source: id as f64, part, outward, o: from, l, distance, touched: &light.touched };
         occlusion(world, &everything, &rays, Bool(true), &mut scratch, &mut Recorder::off())
     };
     let lights = world.lights.iter().map(|l| (l.node, arriving(l))).collect();

@@ -1,7 +1,7 @@
 //! Rays as the kernels see them: in the frame of one shape, with what rounding left out of the origin.
 
-use crate::math::Real;
 use crate::math::real::{dot, each3, three};
+use crate::math::{Mask, Real};
 
 /// A ray in a shape's own frame. `t` is the same number as in the world.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl<R: Real> LocalRay<R> {
     /// The point at `t`: one rounding on the large part, so nothing is lost to the distance of the origin.
     #[inline(always)]
     pub fn at(&self, t: R) -> [R; 3] {
-        three(|i| t.mul_add(self.d[i], self.o[i]) + t.mul_add(self.d_lo[i], self.o_lo[i]))
+        three!(i => t.mul_add(self.d[i], self.o[i]) + t.mul_add(self.d_lo[i], self.o_lo[i]))
     }
 
     /// The parameter of the line's point nearest to the frame's origin, rounded, and the line's point [there](LocalRay::moved):
@@ -36,14 +36,14 @@ impl<R: Real> LocalRay<R> {
     #[inline(always)]
     pub fn nearest(&self) -> (R, [R; 3]) {
         let t0 = -(dot(self.o, self.d) / dot(self.d, self.d));
-        (t0, each3(self.moved(t0), |m| m.0))
+        (t0, each3!(self.moved(t0), m => m.0))
     }
 
     /// The line's point at `t0` with what rounding left out put back (TwoProd, TwoSum), and what that leaves out still: along
     /// a face even that decides where it is crossed.
     #[inline(always)]
     pub fn moved(&self, t0: R) -> [(R, R); 3] {
-        three(|i| {
+        three!(i => {
             let (p, e) = t0.two_prod(self.d[i]);
             let (s, se) = self.o[i].two_sum(p);
             s.two_sum(se + (e + t0.mul_add(self.d_lo[i], self.o_lo[i])))
@@ -65,6 +65,12 @@ pub struct Own<R: Real> {
 }
 
 impl<R: Real> Own<R> {
+    /// Where any lane starts `here`; mostly none does, and what follows from it needn't be computed.
+    #[inline(always)]
+    pub fn of(here: R::Mask, part: R, outward: R::Mask) -> Option<Own<R>> {
+        if here.any() { Some(Own { here, part, outward }) } else { None }
+    }
+
     /// Lanes that start on `part` of this primitive.
     #[inline(always)]
     pub fn on(&self, part: R) -> R::Mask {

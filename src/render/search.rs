@@ -4,8 +4,8 @@ use super::batch::{HitColumns, NONE, RayBatch};
 use super::bounds::{Bounds, larger};
 use super::candidates::Candidates;
 use super::frame::Axes;
+use super::nearest::nearest;
 use super::shape::Kind;
-use super::tracer::nearest;
 use super::world::World;
 use crate::math::hash::KeyedHash;
 use crate::math::real::three;
@@ -51,7 +51,7 @@ impl Search {
                 search.hits += (found[1].id[i] != NONE) as u64;
                 if what(&found[0], i) != what(&found[1], i) {
                     search.differing += 1;
-                    search.first = search.first.or(Some((three(|c| batch.o[c][i]), three(|c| batch.d[c][i]))));
+                    search.first = search.first.or(Some((three!(c => batch.o[c][i]), three!(c => batch.d[c][i]))));
                 }
             }
             search.rays += batch.len as u64;
@@ -72,7 +72,7 @@ fn ray(boxes: &[Bounds], key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     let pick = |k: u64| boxes.get((unit(k) * boxes.len() as f64) as usize).copied().unwrap_or(ANYWHERE);
     // A coordinate between the faces of the box, on one of them, or beyond them by up to its size.
     let within = |b: Bounds, k: u64, spread: f64| {
-        three(|i| {
+        three!(i => {
             let s = match (unit(k + i as u64) * 4.0) as u32 {
                 0 => 0.0,
                 1 => 1.0,
@@ -83,7 +83,7 @@ fn ray(boxes: &[Bounds], key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     };
     let o = if unit(1) < 0.25 { [0.0; 3] } else { within(pick(2), 10, 3.0) };
     let target = within(pick(3), 20, 1.0);
-    let mut d = three(|i| target[i] - o[i]);
+    let mut d = three!(i => target[i] - o[i]);
     if unit(4) < 0.1 {
         d[(unit(5) * 3.0) as usize] = 0.0;
     }
@@ -116,7 +116,7 @@ fn box_of(world: &World, id: u32) -> Option<Bounds> {
     let ([centre, half], Axes::Cyclic(_)) = (extent?, primitive.frame.axes) else { return None };
     let place = |v: [f64; 3]| primitive.frame.vector_to_world(&world.maps, v);
     let (c, half) = (place(centre), place(half));
-    Some(Bounds::around(three(|i| c[i] + primitive.frame.centre[i]), half))
+    Some(Bounds::around(three!(i => c[i] + primitive.frame.centre[i]), half))
 }
 
 /// For a world without bounded surfaces.

@@ -1,61 +1,56 @@
-//! Shades the hits of one object: points and normals first, then light by light, then colour and the rays that follow.
+//! Shades the hits of one run: points and normals first, then light by light, then colour and the rays that follow.
 
-use super::batch::{Column, Column3, RayBatch, column, column3, load3, store3};
+use super::batch::{Column, Column3, HitColumns, RayBatch, column, column3, load3, store3};
 use super::bounds::Bounds;
 use super::candidates::Candidates;
-use super::cull::{Shaft, bounds_of, margin};
+use super::cull::{Shaft, margin};
 use super::footprint::Recorder;
+use super::gathered::Gathered;
 use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::{Slot, Surfacing};
-use super::optics::{dielectric, mirrored};
+use super::optics::mirrored;
 use super::pattern::{PatternPoint, Rows};
 use super::place::RESIDUE;
+use super::run::LaneGroup;
+use super::shape::Surface;
 use super::shape::primitive::spawn_point;
+use super::span::Span;
+use super::spawn::{Children, Leaving};
 use super::surface_pattern::{PatternFrame, bumped};
 use super::world::{PointLight, World};
 use crate::math::fun;
-use crate::math::real::{Mask, dot, each3, minus, scaled, splat3, three};
+use crate::math::real::{Mask, dot, minus, scaled, select3, splat3, three};
 use crate::math::{Elem, Lane};
-use crate::scene::range::BRIGHTEST;
 
-/// The hits of one object.
+/// The hits of one run.
+#[derive(Clone, Copy)]
 pub struct Hits<'a, E> {
-    /// The primitive.
-    pub id: u32,
-    /// The rays that met it.
+    /// The primitive that stands for all that were met.
+    pub flock: u32,
+    /// The rays.
     pub rays: &'a RayBatch<E>,
-    /// How far along each ray.
-    pub t: &'a Column<E>,
-    /// Which part of it.
-    pub part: &'a Column<E>,
+    /// What they met.
+    pub hits: &'a HitColumns<E>,
+    /// Which of the rays.
+    pub groups: &'a [LaneGroup],
 }
 
-/// Where rays go that leave the surface.
-pub struct Children<'a, E> {
-    /// Mirrored ones.
-    pub mirrored: &'a mut RayBatch<E>,
-    /// Those that go through.
-    pub transmitted: &'a mut RayBatch<E>,
-    /// Whether the recursion may go on.
-    pub spawn: bool,
-}
-
-/// What shading keeps of each hit between its passes.
+/// What shading keeps of each hit between its passes, at the ray's own place.
 pub struct ShadeScratch<E> {
     p: Column3<E>,
     /// Geometric normal on the viewer's side.
     n: Column3<E>,
-    /// Shading normal.
+    /// Shading normal; only where it is another.
     ns: Column3<E>,
+    /// Only where a pattern asks.
     local: Column3<E>,
     offset: Column<E>,
     /// 1 where the ray comes from inside.
     inside: Column<E>,
-    diffuse: Column3<E>,
-    specular: Column3<E>,
     spaces: Vec<Rows>,
     shadow: Shadow,
-    occluders: Candidates,
+    /// What may stand before each light.
+    occluders: Vec<Candidates>,
     /// Notes what the rays depend on.
     pub recorder: Recorder,
 }
@@ -70,132 +65,300 @@ impl<E: Elem> ShadeScratch<E> {
             local: column3(n),
             offset: column(n),
             inside: column(n),
-            diffuse: column3(n),
-            specular: column3(n),
             spaces: Vec::new(),
             shadow: Shadow::default(),
-            occluders: Candidates::default(),
+            occluders: Vec::new(),
             recorder,
         }
     }
 }
 
-/// Adds what the hits give back to `radiance`, and puts the rays that follow into `children`.
+/// Leaves what the hits give back in `gathered`, and the rays that follow in `children`.
 #[inline(always)]
 pub fn shade<L: Lane, const AT_EYE: bool>(
     world: &World,
     hits: Hits<'_, L::Elem>,
     s: &mut ShadeScratch<L::Elem>,
-    radiance: &mut Column3<L::Elem>,
+    gathered: &mut Gathered<'_, L::Elem>,
     children: Children<'_, L::Elem>,
     shadow_rays: &mut u64,
 ) {
-    let primitive = world.primitive(hits.id);
-    let surfacing = world.surfacing(hits.id);
+    let primitive = world.primitive(hits.flock);
+    let surfacing = world.surfacing(hits.flock);
     let frame = PatternFrame::new(world, primitive, surfacing, &mut s.spaces);
-    surfaces::<L, AT_EYE>(world, &hits, &frame, s);
+    let run =
+        RunOfHits { world, surfacing, frame, bent: surfacing.bump.is_some() || primitive.kind.may_be_smooth(), hits };
+    let points = run.surfaces::<L, AT_EYE>(s);
     if surfacing.lit {
-        for c in s.diffuse.iter_mut().chain(&mut s.specular) {
-            c[..hits.rays.len].fill(L::Elem::default());
-        }
-        let points = bounds_of(&s.p, hits.rays.len);
         if s.recorder.is_on() {
             s.recorder.lit(points);
         }
-        for light in &world.lights {
-            illuminate::<L>(world, (light, &points), surfacing, &hits, &frame, s, shadow_rays);
-        }
+        run.find_occluders(&points, margin(L::UNIT_ROUNDOFF), &mut s.occluders);
     }
-    finish::<L>(world, surfacing, &hits, &frame, s, radiance, children);
+    run.finish::<L>(s, gathered, children, shadow_rays);
 }
 
-/// Points, normals and offsets of all hits.
-#[inline(always)]
-fn surfaces<L: Lane, const AT_EYE: bool>(
-    world: &World,
-    hits: &Hits<'_, L::Elem>,
-    frame: &PatternFrame<'_>,
-    s: &mut ShadeScratch<L::Elem>,
-) {
-    let mut g = 0;
-    while g < hits.rays.len {
-        let d = load3::<L>(&hits.rays.d, g);
-        let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&hits.rays.o, g) };
-        let (t, part) = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
-        let surface = world.surface::<L, AT_EYE>(hits.id, (o, d), (t, part));
-        let inside = L::zero().lt(dot(surface.n, d));
-        let mut ns = surface.ns;
-        if frame.has_bump() {
-            ns = bumped(frame, &s.spaces, surface.local, surface.n, ns);
-        }
-        let face = |n: [L; 3]| each3(n, |x| L::select(inside, -x, x));
-        store3(&mut s.p, g, surface.p);
-        store3(&mut s.n, g, face(surface.n));
-        store3(&mut s.ns, g, face(ns));
-        store3(&mut s.local, g, surface.local);
-        surface.offset.store(&mut s.offset[g..]);
-        L::select(inside, L::one(), L::zero()).store(&mut s.inside[g..]);
-        g += L::WIDTH;
-    }
+/// A run and what all its hits have in common.
+struct RunOfHits<'a, E> {
+    world: &'a World,
+    surfacing: &'a Surfacing,
+    frame: PatternFrame<'a>,
+    /// Whether shading normals may differ from geometric ones.
+    bent: bool,
+    hits: Hits<'a, E>,
 }
 
-/// Adds one light's share to the diffuse and specular sums; `points` holds all hits.
-#[inline(always)]
-fn illuminate<L: Lane>(
-    world: &World,
-    (light, points): (&PointLight, &Bounds),
-    surfacing: &Surfacing,
-    hits: &Hits<'_, L::Elem>,
-    frame: &PatternFrame<'_>,
-    s: &mut ShadeScratch<L::Elem>,
-    shadow_rays: &mut u64,
-) {
-    let n_hits = hits.rays.len;
-    let shaft = Shaft::new(points, light.at, margin(L::UNIT_ROUNDOFF));
-    s.occluders.gather(world, |b| shaft.may_meet(b), |n, offset| shaft.may_cross(points, n, offset));
-    let (at, color): ([L; 3], [L; 3]) = (splat3(light.at), splat3(light.color));
-    // A light in this very surface grazes it: what rounding makes of the right angle doesn't count.
-    let least = L::splat(if light.touched.contains(&hits.id) { RESIDUE } else { 0.0 });
-    let mut g = 0;
-    while g < n_hits {
-        let (p, n, ns) = (load3::<L>(&s.p, g), load3::<L>(&s.n, g), load3::<L>(&s.ns, g));
-        let o = spawn_point(p, n, L::load(&s.offset[g..]));
-        let to = minus(at, o);
-        let distance = dot(to, to).sqrt();
-        let l = scaled(L::one() / distance, to); // NaN for a light exactly here, which no comparison lets through
-        let cosine = dot(ns, l);
-        let front = least.lt(dot(n, l)) & L::zero().lt(cosine) & lanes_below::<L>(n_hits - g);
-        if front.any() {
-            *shadow_rays += front.bits().count_ones() as u64;
-            let part = L::load(&hits.part[g..]);
-            let outward = !L::load(&s.inside[g..]).same(L::one());
-            let rays = ShadowRays { source: hits.id, part, outward, o, l, distance, touched: &light.touched };
-            let seen = occlusion(world, &s.occluders, &rays, front, &mut s.shadow, &mut s.recorder);
-            let zero = L::zero();
-            let arrives: [L; 3] = three(|c| L::select(front, color[c] * seen[c], zero));
-            let sum = load3::<L>(&s.diffuse, g);
-            let lambert = L::select(front, cosine, zero);
-            store3(&mut s.diffuse, g, three(|c| lambert.mul_add(arrives[c], sum[c])));
-            if !surfacing.specular.is_zero() {
-                let d = load3::<L>(&hits.rays.d, g);
-                let r = mirrored(d, ns);
-                let along = dot(r, l) / dot(d, d).sqrt();
-                let shininess = slot(world, surfacing.shininess, frame, s, g)[0];
-                let high = power(along, shininess, surfacing.shininess);
-                let high = L::select(front & zero.lt(along), high, zero);
-                let sum = load3::<L>(&s.specular, g);
-                store3(&mut s.specular, g, three(|c| high.mul_add(arrives[c], sum[c])));
+impl<E: Elem> RunOfHits<'_, E> {
+    /// Points, normals and offsets of all hits; gives a box around the points.
+    #[inline(always)]
+    fn surfaces<L: Lane<Elem = E>, const AT_EYE: bool>(&self, s: &mut ShadeScratch<E>) -> Bounds {
+        let (rays, hits) = (self.hits.rays, self.hits.hits);
+        let mut points = Span::<L>::new();
+        for group in self.hits.groups {
+            let g = group.first as usize;
+            let d = load3::<L>(&rays.d, g);
+            let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
+            let at = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
+            let ids = L::load(&hits.id[g..]);
+            // Mostly one surface: others one after another.
+            let id = hits.id[g + group.bits.trailing_zeros() as usize];
+            let mut surface = self.world.surface::<L, AT_EYE>(id.to_f64() as u32, (o, d), at);
+            let mut rest = group.bits & !ids.same(L::splat(id.to_f64())).bits();
+            while rest != 0 {
+                let id = hits.id[g + rest.trailing_zeros() as usize].to_f64();
+                let here = ids.same(L::splat(id));
+                surface = surface_of_another::<L>(self.world, id as u32, (o, d), at, here, surface);
+                rest &= !here.bits();
+            }
+            let inside = L::zero().lt(dot(surface.n, d));
+            let faced = FacedBy { inside };
+            store3(&mut s.p, g, surface.p);
+            store3(&mut s.n, g, faced.face(surface.n));
+            if self.bent {
+                let mut ns = surface.ns;
+                if self.frame.has_bump() {
+                    ns = bumped(&self.frame, &s.spaces, surface.local, surface.n, ns);
+                }
+                store3(&mut s.ns, g, faced.face(ns));
+            }
+            if self.surfacing.patterned {
+                store3(&mut s.local, g, surface.local);
+            }
+            surface.offset.store(&mut s.offset[g..]);
+            L::select(inside, L::one(), L::zero()).store(&mut s.inside[g..]);
+            points.hold(L::Mask::from_bits(group.bits), surface.p);
+        }
+        points.bounds()
+    }
+
+    /// What may stand between the hits, which lie in `points`, and each light.
+    #[inline(always)]
+    fn find_occluders(&self, points: &Bounds, margin: f64, occluders: &mut Vec<Candidates>) {
+        occluders.resize_with(self.world.lights.len(), Candidates::default);
+        for (light, occluders) in self.world.lights.iter().zip(occluders) {
+            let shaft = Shaft::new(points, light.at, margin);
+            occluders.gather(
+                self.world,
+                #[inline(always)]
+                |b| shaft.may_meet(b),
+                |n, offset| shaft.may_cross(points, n, offset),
+            );
+        }
+    }
+
+    /// Light, colour, and the rays that follow.
+    #[inline(always)]
+    fn finish<L: Lane<Elem = E>>(
+        &self,
+        s: &mut ShadeScratch<E>,
+        gathered: &mut Gathered<'_, E>,
+        mut children: Children<'_, E>,
+        shadow_rays: &mut u64,
+    ) {
+        let (rays, m) = (self.hits.rays, self.surfacing);
+        let ambient: [L; 3] = splat3(self.world.ambient);
+        for group in self.hits.groups {
+            let g = group.first as usize;
+            let hit = LitHits::<L> {
+                d: load3(&rays.d, g),
+                p: load3(&s.p, g),
+                n: load3(&s.n, g),
+                ns: load3(if self.bent { &s.ns } else { &s.n }, g),
+                local: if m.patterned { load3(&s.local, g) } else { [L::zero(); 3] },
+                offset: L::load(&s.offset[g..]),
+                inside: L::load(&s.inside[g..]),
+            };
+            let (mut diffuse, mut specular) = ([L::zero(); 3], [L::zero(); 3]);
+            if m.lit {
+                self.illuminate(group, &hit, s, (&mut diffuse, &mut specular), shadow_rays);
+            }
+            let spaces = &s.spaces;
+            let mut value = [L::zero(); 3];
+            if !m.ambient.is_zero() || !m.diffuse.is_zero() {
+                let color = self.slot(m.color, &hit, spaces);
+                let share = self.slot(m.ambient, &hit, spaces);
+                let mut light = three!(c => share[c] * ambient[c]);
+                if !m.diffuse.is_zero() {
+                    let share = self.slot(m.diffuse, &hit, spaces);
+                    light = three!(c => share[c].mul_add(diffuse[c], light[c]));
+                }
+                value = three!(c => color[c] * light[c]);
+            }
+            if !m.specular.is_zero() {
+                let share = self.slot(m.specular, &hit, spaces);
+                value = three!(c => share[c].mul_add(specular[c], value[c]));
+            }
+            let weight = if gathered.first { [L::one(); 3] } else { load3::<L>(&rays.weight, g) };
+            gathered.add(group, &rays.slot, three!(c => weight[c] * value[c]));
+
+            if children.any(m) {
+                let (back, through) = (self.slot(m.reflect, &hit, spaces), self.slot(m.transmit, &hit, spaces));
+                let leaving = Leaving {
+                    d: hit.d,
+                    p: hit.p,
+                    n: hit.n,
+                    ns: hit.ns,
+                    offset: hit.offset,
+                    inside: hit.inside,
+                    weight,
+                    id: L::load(&self.hits.hits.id[g..]),
+                    part: L::load(&self.hits.hits.part[g..]),
+                    slot: L::load(&rays.slot[g..]),
+                };
+                children.spawn(m, &leaving, back, through, L::Mask::from_bits(group.bits));
             }
         }
-        g += L::WIDTH;
+    }
+
+    /// Adds every light's share to the diffuse and specular sums.
+    #[inline(always)]
+    fn illuminate<L: Lane<Elem = E>>(
+        &self,
+        group: &LaneGroup,
+        hit: &LitHits<L>,
+        s: &mut ShadeScratch<E>,
+        (diffuse, specular): (&mut [L; 3], &mut [L; 3]),
+        shadow_rays: &mut u64,
+    ) {
+        let g = group.first as usize;
+        let (zero, live) = (L::zero(), L::Mask::from_bits(group.bits));
+        let o = spawn_point(hit.p, hit.n, hit.offset);
+        let (source, part) = (L::load(&self.hits.hits.id[g..]), L::load(&self.hits.hits.part[g..]));
+        let outward = L::one() - hit.inside;
+        let mut mirror: Option<([L; 3], L)> = None;
+        for (number, light) in self.world.lights.iter().enumerate() {
+            let (at, color): ([L; 3], [L; 3]) = (splat3(light.at), splat3(light.color));
+            // A light in this very surface grazes it: what rounding makes of the right angle doesn't count.
+            let least = L::splat(if self.is_touched_by(light) { RESIDUE } else { 0.0 });
+            let to = minus(at, o);
+            // Most of what faces away does so by far.
+            let size = to[0].abs() + to[1].abs() + to[2].abs();
+            if !(live & !dot(hit.n, to).lt(size * L::splat(-FAR_FROM_GRAZING))).any() {
+                continue;
+            }
+            let distance = dot(to, to).sqrt();
+            let l = scaled(L::one() / distance, to); // NaN for a light exactly here, which no comparison lets through
+            let cosine = dot(hit.ns, l);
+            let front = least.lt(dot(hit.n, l)) & zero.lt(cosine) & live;
+            if !front.any() {
+                continue;
+            }
+            *shadow_rays += front.bits().count_ones() as u64;
+            let rays = ShadowRays { source, part, outward, o, l, distance, touched: &light.touched };
+            let seen = occlusion(self.world, &s.occluders[number], &rays, front, &mut s.shadow, &mut s.recorder);
+            let arrives: [L; 3] = three!(c => L::select(front, color[c] * seen[c], zero));
+            let lambert = L::select(front, cosine, zero);
+            *diffuse = three!(c => lambert.mul_add(arrives[c], diffuse[c]));
+            if !self.surfacing.specular.is_zero() {
+                let (r, length) = match mirror {
+                    Some(known) => known,
+                    None => (mirrored(hit.d, hit.ns), dot(hit.d, hit.d).sqrt()),
+                };
+                mirror = Some((r, length));
+                let along = dot(r, l);
+                if !(front & zero.lt(along)).any() {
+                    continue;
+                }
+                let along = along / length;
+                let shininess = self.slot(self.surfacing.shininess, hit, &s.spaces)[0];
+                let high = power(along, shininess, self.surfacing.shininess);
+                let high = L::select(front & zero.lt(along), high, zero);
+                *specular = three!(c => high.mul_add(arrives[c], specular[c]));
+            }
+        }
+    }
+
+    /// Whether the light lies on the surface that was met; such surfaces are runs of their own.
+    #[inline(always)]
+    fn is_touched_by(&self, light: &PointLight) -> bool {
+        !light.touched.is_empty() && light.touched.contains(&self.hits.flock)
+    }
+
+    /// The value of a slot.
+    #[inline(always)]
+    fn slot<L: Lane<Elem = E>>(&self, slot: Slot, hit: &LitHits<L>, spaces: &[Rows]) -> [L; 3] {
+        match slot {
+            Slot::Constant(c) => splat3(c),
+            Slot::Pattern(id) => {
+                let outward = FacedBy { inside: hit.inside.same(L::one()) }.face(hit.n);
+                let at: PatternPoint<'_, L> = self.frame.point(spaces, hit.local, outward);
+                self.world.patterns.eval(id, &at)
+            }
+        }
     }
 }
 
-/// The lanes that hold one of the last `n` hits.
-#[inline(always)]
-fn lanes_below<L: Lane>(n: usize) -> L::Mask {
-    if n >= L::WIDTH { L::Mask::splat(true) } else { L::Mask::first(n) }
+/// Hits of one register.
+struct LitHits<L> {
+    d: [L; 3],
+    p: [L; 3],
+    n: [L; 3],
+    ns: [L; 3],
+    local: [L; 3],
+    offset: L,
+    inside: L,
 }
+
+/// Turns normals to the viewer's side, and back.
+struct FacedBy<M> {
+    inside: M,
+}
+
+impl<M: Mask> FacedBy<M> {
+    #[inline(always)]
+    fn face<L: Lane<Mask = M>>(&self, n: [L; 3]) -> [L; 3] {
+        select3(self.inside, [-n[0], -n[1], -n[2]], n)
+    }
+}
+
+/// `surface`, but that of `id` where `here`; in a function of its own, for kernels are large.
+#[inline(always)]
+fn surface_of_another<L: Lane>(
+    world: &World,
+    id: u32,
+    ray: ([L; 3], [L; 3]),
+    at: (L, L),
+    here: L::Mask,
+    surface: Surface<L>,
+) -> Surface<L> {
+    L::vectorize(
+        #[inline(always)]
+        || {
+            let other = world.surface::<L, false>(id, ray, at);
+            Surface {
+                p: select3(here, other.p, surface.p),
+                n: select3(here, other.n, surface.n),
+                ns: select3(here, other.ns, surface.ns),
+                offset: L::select(here, other.offset, surface.offset),
+                local: select3(here, other.local, surface.local),
+            }
+        },
+    )
+}
+
+/// Relative to the light's distance: how far below its horizon a surface must be to face away whatever rounding does; thousands
+/// of roundings of `f64` and of `f32`.
+const FAR_FROM_GRAZING: f64 = 1.0 / 1024.0;
 
 /// x^exponent for 0 < x ≤ 1. A constant whole exponent goes by squaring.
 #[inline(always)]
@@ -214,143 +377,5 @@ fn power<L: Lane>(x: L, exponent: L, slot: Slot) -> L {
             product
         }
         _ => L::each([x, exponent], |[x, e]| [if x > 0.0 { fun::pow(x, e) } else { 0.0 }])[0],
-    }
-}
-
-/// The value of a slot at the hits from number `g` on.
-#[inline(always)]
-fn slot<L: Lane>(world: &World, slot: Slot, frame: &PatternFrame<'_>, s: &ShadeScratch<L::Elem>, g: usize) -> [L; 3] {
-    match slot {
-        Slot::Constant(c) => splat3(c),
-        Slot::Pattern(id) => {
-            let (n, inside) = (load3::<L>(&s.n, g), L::load(&s.inside[g..]));
-            let outward = each3(n, |x| L::select(inside.same(L::one()), -x, x));
-            let at: PatternPoint<'_, L> = frame.point(&s.spaces, load3::<L>(&s.local, g), outward);
-            world.patterns.eval(id, &at)
-        }
-    }
-}
-
-/// Colour, and the rays that follow.
-#[inline(always)]
-fn finish<L: Lane>(
-    world: &World,
-    m: &Surfacing,
-    hits: &Hits<'_, L::Elem>,
-    frame: &PatternFrame<'_>,
-    s: &mut ShadeScratch<L::Elem>,
-    radiance: &mut Column3<L::Elem>,
-    children: Children<'_, L::Elem>,
-) {
-    let rays = hits.rays;
-    let ambient: [L; 3] = splat3(world.ambient);
-    let (mirrors, lets_through) = (children.spawn && m.mirrors(), children.spawn && m.lets_through());
-    let mut g = 0;
-    while g < rays.len {
-        let weight = load3::<L>(&rays.weight, g);
-        let mut value = [L::zero(); 3];
-        if !m.ambient.is_zero() || !m.diffuse.is_zero() {
-            let color = slot::<L>(world, m.color, frame, s, g);
-            let share = slot::<L>(world, m.ambient, frame, s, g);
-            let mut light = three(|c| share[c] * ambient[c]);
-            if !m.diffuse.is_zero() {
-                let share = slot::<L>(world, m.diffuse, frame, s, g);
-                let sum = load3::<L>(&s.diffuse, g);
-                light = three(|c| share[c].mul_add(sum[c], light[c]));
-            }
-            value = three(|c| color[c] * light[c]);
-        }
-        if !m.specular.is_zero() {
-            let share = slot::<L>(world, m.specular, frame, s, g);
-            let sum = load3::<L>(&s.specular, g);
-            value = three(|c| share[c].mul_add(sum[c], value[c]));
-        }
-        let lanes = L::WIDTH.min(rays.len - g);
-        add_to_slots::<L>(radiance, &rays.slot[g..g + lanes], three(|c| weight[c] * value[c]));
-
-        if mirrors || lets_through {
-            let d = load3::<L>(&rays.d, g);
-            let (p, n, ns) = (load3::<L>(&s.p, g), load3::<L>(&s.n, g), load3::<L>(&s.ns, g));
-            let offset = L::load(&s.offset[g..]);
-            let mut back = slot::<L>(world, m.reflect, frame, s, g);
-            let mut through = slot::<L>(world, m.transmit, frame, s, g);
-            let mut onward = d;
-            let inside = L::load(&s.inside[g..]);
-            let outside = L::one() - inside;
-            if let Some(ior) = m.ior {
-                let bent = dielectric(d, ns, ior, inside.same(L::one()));
-                back = three(|c| through[c].mul_add(bent.reflectance, back[c]));
-                through = each3(through, |x| x * (L::one() - bent.reflectance));
-                onward = bent.direction;
-            }
-            let live = lanes_below::<L>(rays.len - g);
-            let part = L::load(&hits.part[g..]);
-            let from = |o: [L; 3], d: [L; 3], w: [L; 3], outward: L| {
-                // Mirrors that amplify, face to face, would leave the range of numbers.
-                let most = L::splat(BRIGHTEST);
-                let w = three(|c| (weight[c] * w[c]).min(most).max(-most));
-                Child { o, d, w, part, outward }
-            };
-            if mirrors {
-                // A tilted normal may send the mirrored ray into the surface; then the true normal decides.
-                let tilted = mirrored(d, ns);
-                let out = L::zero().lt(dot(tilted, n));
-                let plain = mirrored(d, n);
-                let r = three(|c| L::select(out, tilted[c], plain[c]));
-                let child = from(spawn_point(p, n, offset), r, back, outside);
-                push(children.mirrored, child, live, hits.id, &rays.slot[g..]);
-            }
-            if lets_through {
-                let live = live & dot(onward, n).lt(L::zero());
-                let child = from(spawn_point(p, n, -offset), onward, through, inside);
-                push(children.transmitted, child, live, hits.id, &rays.slot[g..]);
-            }
-        }
-        g += L::WIDTH;
-    }
-}
-
-/// A ray that leaves the surface.
-struct Child<L> {
-    o: [L; 3],
-    d: [L; 3],
-    w: [L; 3],
-    part: L,
-    /// 1 where it leaves to the outside.
-    outward: L,
-}
-
-/// Appends those of `live` that carry any weight.
-#[inline(always)]
-fn push<L: Lane>(batch: &mut RayBatch<L::Elem>, child: Child<L>, live: L::Mask, id: u32, slots: &[L::Elem]) {
-    let zero = L::zero();
-    let nothing = child.w[0].same(zero) & child.w[1].same(zero) & child.w[2].same(zero);
-    let live = live & !nothing;
-    let count = live.bits().count_ones() as usize;
-    if count == 0 {
-        return;
-    }
-    let at = batch.len;
-    for c in 0..3 {
-        child.o[c].compress(live, &mut batch.o[c][at..]);
-        child.d[c].compress(live, &mut batch.d[c][at..]);
-        child.w[c].compress(live, &mut batch.weight[c][at..]);
-    }
-    L::load(slots).compress(live, &mut batch.slot[at..]);
-    L::splat(id as f64).compress(live, &mut batch.source[at..]);
-    child.part.compress(live, &mut batch.source_part[at..]);
-    child.outward.compress(live, &mut batch.outward[at..]);
-    batch.len += count;
-}
-
-#[inline(always)]
-fn add_to_slots<L: Lane>(radiance: &mut Column3<L::Elem>, slots: &[L::Elem], value: [L; 3]) {
-    for (c, column) in radiance.iter_mut().enumerate() {
-        let mut lanes = [L::Elem::default(); super::batch::PADDING];
-        value[c].store(&mut lanes);
-        for (x, slot) in lanes.iter().zip(slots) {
-            let sum = &mut column[slot.to_f64() as usize];
-            *sum = L::Elem::from_f64(sum.to_f64() + x.to_f64());
-        }
     }
 }

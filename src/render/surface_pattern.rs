@@ -48,7 +48,7 @@ impl<'w> PatternFrame<'w> {
     #[inline(always)]
     fn as_made<R: Real>(&self, local: [R; 3]) -> [R; 3] {
         let Some(MadeSpace { rescale: Some(rescale), .. }) = self.made else { return local };
-        three(|i| {
+        three!(i => {
             let mut x = local[i] * R::splat(rescale.inverse);
             for (scaled, made) in rescale.faces[i] {
                 x = R::select(local[i].same(R::splat(scaled)), R::splat(made), x);
@@ -78,6 +78,7 @@ impl<'w> PatternFrame<'w> {
     }
 
     /// What the material lets through at a point.
+    #[inline(always)]
     pub fn transmission<R: Lane>(&self, world: &World, at: &PatternPoint<'_, R>) -> [R; 3] {
         match self.surfacing.transmit {
             Slot::Constant(c) => splat3(c),
@@ -106,34 +107,22 @@ fn without_residue(mut rows: Rows, by_corners: bool) -> Rows {
 /// A unit normal through the linear map for normals.
 #[inline(always)]
 fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
-    let m = each3(*map, |row| dot(splat3(row), n));
+    let m = each3!(*map, row => dot(splat3(row), n));
     scaled(R::one() / dot(m, m).sqrt(), m)
 }
 
 /// The normal `ns` tilted by the slope of the height pattern: n − ∇h along the surface, in the space in which the shape was
 /// made (Blinn, "Simulation of wrinkled surfaces", SIGGRAPH 1978). Slopes are central differences, a fraction of a feature
 /// wide.
+#[inline(always)]
 pub fn bumped<R: Lane>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3], n: [R; 3], ns: [R; 3]) -> [R; 3] {
     let (Some((pattern, step)), Some(made)) = (frame.surfacing.bump, frame.made) else { return ns };
     let Some(detail) = &made.detail else { return ns };
-    let local = frame.as_made(local);
-    let at = frame.point_as_made(spaces, local, n);
-    let height = |local: [R; 3]| {
-        let mut q = frame.point_as_made(spaces, local, n);
-        q.normal = at.normal; // pictures laid on by normal stay where they are
-        frame.world.patterns.eval(pattern, &q)[0]
-    };
-    // The slope per unit of the made space, along the local vector `v` that takes one step there.
-    let h = R::splat(step);
-    let slope = |v: [f64; 3]| {
-        let v: [R; 3] = each3(v, |x| R::splat(x * step));
-        let moved = |side: R| height(axpy(side, v, local));
-        (moved(R::one()) - moved(-R::one())) / (h + h)
-    };
+    let heights = Heights { frame, spaces, pattern, step, local: frame.as_made(local), n };
     let gradient: [R; 3] = match made.made_from_local.inverse() {
         Some(back) => {
             let m = back.linear_f64();
-            three(|i| slope([m[0][i], m[1][i], m[2][i]]))
+            three!(i => heights.slope([m[0][i], m[1][i], m[2][i]]))
         }
         None => {
             // A triangle: slopes along two directions in its plane, made square by Gram and Schmidt.
@@ -146,11 +135,40 @@ pub fn bumped<R: Lane>(frame: &PatternFrame<'_>, spaces: &[Rows], local: [R; 3],
             let rest: [f64; 3] = std::array::from_fn(|i| e2[i] - share * u[i]);
             let l2 = along(rest, rest).sqrt();
             let v = rest.map(|x| x / l2);
-            let (su, sv) = (slope([1.0 / l1, 0.0, 0.0]), slope([-share / (l1 * l2), 0.0, 1.0 / l2]));
+            let su = heights.slope([1.0 / l1, 0.0, 0.0]);
+            let sv = heights.slope([-share / (l1 * l2), 0.0, 1.0 / l2]);
             axpy(sv, splat3(v), scaled(su, splat3(u)))
         }
     };
     let m = turned(&detail.made_normal_from_world, ns);
     let tilted = minus(m, axpy(-dot(m, gradient), m, gradient));
     turned(&detail.world_normal_from_made, tilted)
+}
+
+/// A height pattern around a point.
+struct Heights<'a, R> {
+    frame: &'a PatternFrame<'a>,
+    spaces: &'a [Rows],
+    pattern: u32,
+    step: f64,
+    /// The point, in the lengths in which the shape was made.
+    local: [R; 3],
+    n: [R; 3],
+}
+
+impl<R: Lane> Heights<'_, R> {
+    /// The slope per unit of the made space, along the local vector `v` that takes one step there.
+    #[inline(always)]
+    fn slope(&self, v: [f64; 3]) -> R {
+        let v: [R; 3] = each3!(v, x => R::splat(x * self.step));
+        let h = R::splat(self.step);
+        (self.height(R::one(), v) - self.height(-R::one(), v)) / (h + h)
+    }
+
+    /// The height at `side` times `v` from the point. Pictures laid on by normal stay where they are.
+    #[inline(always)]
+    fn height(&self, side: R, v: [R; 3]) -> R {
+        let q = self.frame.point_as_made(self.spaces, axpy(side, v, self.local), self.n);
+        self.frame.world.patterns.eval(self.pattern, &q)[0]
+    }
 }

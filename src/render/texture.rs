@@ -58,6 +58,7 @@ impl Texture {
         }
     }
 
+    #[inline]
     fn texel(&self, x: f64, y: f64, edges: [Edge; 2]) -> [f64; 3] {
         let (i, j) = (index(x, self.width, edges[0]), index(y, self.height, edges[1]));
         self.texels[j * self.width + i].map(|c| self.linear[c as usize])
@@ -65,7 +66,11 @@ impl Texture {
 }
 
 /// The texel number for a whole number `x`; NaN counts as 0.
+#[inline]
 fn index(x: f64, n: usize, edge: Edge) -> usize {
+    if x >= 0.0 && x < n as f64 {
+        return x as usize;
+    }
     match edge {
         Edge::Repeat => (x.rem_euclid(n as f64) as usize).min(n - 1),
         Edge::Clamp => (x.clamp(0.0, (n - 1) as f64)) as usize,

@@ -17,7 +17,7 @@ pub fn radiance(world: &World, options: &Options, x: u32, y: u32) -> [f64; 3] {
     let cancel = AtomicBool::new(false);
     let mut worker = TileWorker::<f64>::new(world, &one, &cancel, Recorder::off());
     match worker.sum_up(Crop { x, y, width: 1, height: 1 }) {
-        true => worker.sums[0],
+        true => [0, 1, 2].map(|c| worker.sums[c][0]),
         false => world.background,
     }
 }
@@ -30,20 +30,29 @@ pub struct TileWorker<'w, L: Lane> {
     /// Rays traced; what [`render`](TileWorker::render) leaves for the statistics.
     pub tracer: Tracer<'w, L>,
     /// Sums over the rays of each pixel.
-    sums: Vec<[f64; 3]>,
+    sums: [Box<[f64]>; 3],
+    /// How far right each column of the tile looks.
+    across: Vec<f64>,
 }
 
 impl<'w, L: Lane> TileWorker<'w, L> {
     /// A worker for tiles of up to [`Options::tile_side`]² pixels.
     pub fn new(world: &'w World, options: &Options, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         let n = (options.tile_side() * options.tile_side()) as usize;
-        TileWorker {
-            world,
-            grid: world.camera.grid(options),
-            side: options.aa.side(),
-            tracer: Tracer::new(world, options.max_depth, n, cancel, recorder),
-            sums: vec![[0.0; 3]; n],
+        let mut tracer = Tracer::new(world, options.max_depth, n, cancel, recorder);
+        let grid = world.camera.grid(options);
+        let batch = tracer.camera_rays();
+        // What all camera rays have in common is written once.
+        for i in 0..n {
+            for c in 0..3 {
+                batch.weight[c][i] = L::Elem::from_f64(1.0);
+                batch.d[c][i] = L::Elem::from_f64(grid.forward()[c]);
+            }
+            batch.slot[i] = L::Elem::from_f64(i as f64);
+            batch.source[i] = L::Elem::from_f64(NONE);
         }
+        let sums = [(); 3].map(|_| vec![0.0; n].into_boxed_slice());
+        TileWorker { world, grid, side: options.aa.side(), tracer, sums, across: Vec::new() }
     }
 
     /// Renders the pixels of `tile` into its rows.
@@ -58,7 +67,8 @@ impl<'w, L: Lane> TileWorker<'w, L> {
             for _ in 0..samples {
                 sum = std::array::from_fn(|c| sum[c] + background[c]);
             }
-            let pixel = resolve(sum, samples);
+            let mean = Mean::of(samples);
+            let pixel = sum.map(|s| mean.resolve(s));
             rows.iter_mut().for_each(|row| row.fill(pixel));
             self.tracer.counts.camera += samples as u64 * n as u64;
             self.tracer.recorder().saw_background();
@@ -67,9 +77,14 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         if self.tracer.is_cancelled() {
             return;
         }
-        for (row, sums) in rows.iter_mut().zip(self.sums.chunks(tile.width as usize)) {
-            for (pixel, sum) in row.iter_mut().zip(sums) {
-                *pixel = resolve(*sum, samples);
+        let mean = Mean::of(samples);
+        let [red, green, blue] = &self.sums;
+        let mut i = 0;
+        for row in rows {
+            let colors = red[i..].iter().zip(&green[i..]).zip(&blue[i..]);
+            i += row.len();
+            for (pixel, ((r, g), b)) in row.iter_mut().zip(colors) {
+                *pixel = [mean.resolve(*r), mean.resolve(*g), mean.resolve(*b)];
             }
         }
     }
@@ -81,7 +96,6 @@ impl<'w, L: Lane> TileWorker<'w, L> {
             return false;
         }
         let n = (tile.width * tile.height) as usize;
-        self.sums[..n].fill([0.0; 3]);
         for sy in 0..self.side {
             for sx in 0..self.side {
                 if self.tracer.is_cancelled() {
@@ -89,15 +103,15 @@ impl<'w, L: Lane> TileWorker<'w, L> {
                 }
                 self.camera_rays(tile, [sx, sy]);
                 self.tracer.recorder().sample();
-                for c in &mut self.tracer.radiance {
-                    c[..n].fill(L::Elem::default());
-                }
                 match self.world.camera.at_eye() {
                     true => self.tracer.trace::<true>(),
                     false => self.tracer.trace::<false>(),
                 }
-                for (i, sum) in self.sums[..n].iter_mut().enumerate() {
-                    *sum = std::array::from_fn(|c| sum[c] + self.tracer.radiance[c][i].to_f64());
+                let is_first = sx == 0 && sy == 0;
+                for (sums, radiance) in self.sums.iter_mut().zip(&self.tracer.radiance) {
+                    for (sum, light) in sums[..n].iter_mut().zip(&radiance[..n]) {
+                        *sum = if is_first { 0.0 } else { *sum } + light.to_f64();
+                    }
                 }
             }
         }
@@ -114,6 +128,7 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         let grid = &self.grid;
         self.tracer.candidates.gather(
             self.world,
+            #[inline(always)]
             |b| frustum.may_meet(b),
             |n, offset| grid.may_meet_plane(rect, n, offset, margin),
         );
@@ -124,27 +139,46 @@ impl<'w, L: Lane> TileWorker<'w, L> {
     #[inline(always)]
     fn camera_rays(&mut self, tile: Crop, [sx, sy]: [u32; 2]) {
         // A sample's place in its pixel; a middle is exact for every grid whose side is a power of two.
-        let at = |s: u32| (s as f64 + 0.5) / self.side as f64;
-        let (ox, oy) = (at(sx), at(sy));
+        let (ox, oy) = ((sx as f64 + 0.5) / self.side as f64, (sy as f64 + 0.5) / self.side as f64);
+        self.across.clear();
+        self.across.extend((tile.x..tile.x + tile.width).map(|x| self.grid.across(x as f64 + ox)));
+        let parallel = !self.world.camera.at_eye();
         let batch = self.tracer.camera_rays();
-        let n = (tile.width * tile.height) as usize;
-        for i in 0..n {
-            let (px, py) = (i as u32 % tile.width, i as u32 / tile.width);
-            let (x, y) = ((tile.x + px) as f64 + ox, (tile.y + py) as f64 + oy);
-            let (o, d) = self.grid.ray::<f64>(x, y);
+        batch.len = (tile.width * tile.height) as usize;
+        let width = tile.width as usize;
+        for py in 0..tile.height {
+            let (right, base) = self.grid.row((tile.y + py) as f64 + oy);
+            let columns = if parallel { &mut batch.o } else { &mut batch.d };
             for c in 0..3 {
-                batch.o[c][i] = L::Elem::from_f64(o[c]);
-                batch.d[c][i] = L::Elem::from_f64(d[c]);
-                batch.weight[c][i] = L::Elem::from_f64(1.0);
+                let row = &mut columns[c][py as usize * width..][..width];
+                for (to, sx) in row.iter_mut().zip(&self.across) {
+                    *to = L::Elem::from_f64(right[c].mul_add(*sx, base[c]));
+                }
             }
-            batch.slot[i] = L::Elem::from_f64(i as f64);
-            batch.source[i] = L::Elem::from_f64(NONE);
         }
-        batch.len = n;
     }
 }
 
-/// The mean of a pixel's rays, as it is stored. Brighter than `f32` can hold becomes the brightest that it can.
-fn resolve(sum: [f64; 3], samples: u32) -> [f32; 3] {
-    sum.map(|s| (s / samples as f64).clamp(-(f32::MAX as f64), f32::MAX as f64) as f32)
+/// Takes the mean of a pixel's rays.
+struct Mean {
+    samples: f64,
+    /// Its reciprocal, where that is exact: it gives the same bits as the quotient, and sooner.
+    reciprocal: Option<f64>,
+}
+
+impl Mean {
+    fn of(samples: u32) -> Mean {
+        let count = samples as f64;
+        Mean { samples: count, reciprocal: samples.is_power_of_two().then_some(1.0 / count) }
+    }
+
+    /// The mean, as it is stored. Brighter than `f32` can hold becomes the brightest that it can.
+    #[inline(always)]
+    fn resolve(&self, sum: f64) -> f32 {
+        let mean = match self.reciprocal {
+            Some(factor) => sum * factor,
+            None => sum / self.samples,
+        };
+        mean.clamp(-(f32::MAX as f64), f32::MAX as f64) as f32
+    }
 }

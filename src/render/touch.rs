@@ -60,23 +60,29 @@ pub fn lies_on(primitive: &Primitive, tables: Tables<'_>, point: [f64; 3]) -> bo
     }
 }
 
-/// Shows another visitor all crossings but the one nearest to the end of the rays.
+/// Shows another visitor all crossings, or all but the one nearest to the end of the rays.
 pub struct ButAtTheEnd<'v, R: Real, V> {
     end: R,
+    hold: bool,
     held: (R, R, R::Mask),
     inner: &'v mut V,
 }
 
 impl<'v, R: Real, V: Visit<R>> ButAtTheEnd<'v, R, V> {
-    /// Keeps from `inner` the crossing nearest to `end`.
-    pub fn new(end: R, inner: &'v mut V) -> Self {
+    /// Keeps from `inner` the crossing nearest to `end`, if it shall `hold` any back.
+    #[inline(always)]
+    pub fn new(end: R, hold: bool, inner: &'v mut V) -> Self {
         let nothing = R::zero().lt(R::zero());
-        ButAtTheEnd { end, held: (R::splat(f64::INFINITY), R::splat(SIDE), nothing), inner }
+        ButAtTheEnd { end, hold, held: (R::splat(f64::INFINITY), R::splat(SIDE), nothing), inner }
     }
 }
 
 impl<R: Real, V: Visit<R>> Visit<R> for ButAtTheEnd<'_, R, V> {
+    #[inline(always)]
     fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
+        if !self.hold {
+            return self.inner.crossing(t, part, valid);
+        }
         let (t_held, part_held, valid_held) = self.held;
         let nearer = valid & (t - self.end).abs().lt((t_held - self.end).abs());
         let pick = |a: R::Mask, b: R::Mask| (nearer & a) | (!nearer & b);
@@ -118,7 +124,7 @@ mod tests {
                 seen.push(t);
             }
         };
-        let mut visit = ButAtTheEnd::new(5.0, &mut keep);
+        let mut visit = ButAtTheEnd::new(5.0, true, &mut keep);
         for t in [1.0, 4.999_999, 7.0] {
             visit.crossing(t, 0.0, Bool(true));
         }

@@ -1,19 +1,22 @@
 //! Traces a batch of camera rays and everything that follows from them.
 //!
-//! Rays go in batches; what a batch met is sorted by object, so that shape and material are the same for a whole run of
-//! hits. Mirrored and transmitted rays go into batches of their own, which are traced one after the other before the next
+//! Rays go in batches; what a batch met is sorted into runs that are shaded together, so that the material is the same for a
+//! whole run of hits. Mirrored and transmitted rays go into batches of their own, which are traced one after the other before the next
 //! batch: every pixel adds up its contributions in the order own, mirrored, transmitted, down its tree of rays, whatever
 //! batch its rays travelled in. So tiles, crops and threads can't change a bit.
 
-use super::batch::{Column, Column3, HitColumns, NONE, RayBatch, column3, load3};
+use super::batch::{Column3, HitColumns, NONE, RayBatch, column3};
 use super::candidates::{Candidates, narrow_to_batch};
 use super::footprint::Recorder;
+use super::gathered::Gathered;
+use super::nearest::nearest;
 use super::options::RayCounts;
-use super::ray::Own;
-use super::shade::{Children, Hits, ShadeScratch};
-use super::shape::Visit;
+use super::run::{LaneGroup, Run, Runs};
+use super::shade::{Hits, ShadeScratch, shade};
+use super::spawn::Children;
 use super::world::World;
-use crate::math::{Elem, Lane, Real};
+use crate::math::real::{Mask, three};
+use crate::math::{Elem, Lane};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Traces batches; one for each worker thread.
@@ -22,14 +25,16 @@ pub struct Tracer<'w, L: Lane> {
     cancel: &'w AtomicBool,
     max_depth: usize,
     levels: Vec<Level<L::Elem>>,
-    /// Light gathered by each pixel of the tile.
+    /// Light gathered by each pixel of the tile; what it holds when a [`trace`](Tracer::trace) begins is forgotten.
     pub radiance: Column3<L::Elem>,
     /// What camera rays may meet.
     pub candidates: Candidates,
     /// What the batch at hand may meet.
     narrowed: Candidates,
     scratch: ShadeScratch<L::Elem>,
-    groups: Groups,
+    runs: Runs,
+    /// The run at hand, once packed.
+    packed: Run,
     /// Rays traced so far.
     pub counts: RayCounts,
     capacity: usize,
@@ -39,7 +44,7 @@ pub struct Tracer<'w, L: Lane> {
 struct Level<E> {
     rays: RayBatch<E>,
     hits: HitColumns<E>,
-    /// Rays and hits of one object, gathered.
+    /// Rays and hits of a sparse run, packed.
     run: RayBatch<E>,
     run_hits: HitColumns<E>,
     mirrored: RayBatch<E>,
@@ -72,7 +77,8 @@ impl<'w, L: Lane> Tracer<'w, L> {
             candidates: Candidates::default(),
             narrowed: Candidates::default(),
             scratch: ShadeScratch::new(capacity, recorder),
-            groups: Groups::new(capacity),
+            runs: Runs::new(world.primitives.len()),
+            packed: Run::default(),
             counts: RayCounts::default(),
             capacity,
         }
@@ -93,7 +99,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
         &mut self.levels[0].rays
     }
 
-    /// Traces the camera rays, whose candidates are known, and all that follows; adds to `radiance`. `AT_EYE` says that
+    /// Traces the camera rays, whose candidates are known, and all that follows; leaves it in `radiance`. `AT_EYE` says that
     /// they all start at the origin.
     #[inline(always)]
     pub fn trace<const AT_EYE: bool>(&mut self) {
@@ -142,204 +148,86 @@ impl<'w, L: Lane> Tracer<'w, L> {
     #[inline(always)]
     fn process<const AT_EYE: bool>(&mut self, level: usize, candidates: &Candidates) {
         let at = &mut self.levels[level];
-        nearest::<L, AT_EYE>(self.world, candidates, &at.rays, &mut at.hits);
-        self.groups.sort(&at.hits.id, at.rays.len);
+        L::vectorize(
+            #[inline(always)]
+            || {
+                nearest::<L, AT_EYE>(self.world, candidates, &at.rays, &mut at.hits);
+                self.runs.sort::<L>(self.world, &at.hits.id, at.rays.len);
+            },
+        );
         if self.scratch.recorder.is_on() {
-            self.scratch.recorder.saw(self.groups.found.iter().map(|f| f.0));
-            if self.groups.missed > 0 {
+            let ids = at.hits.id[..at.rays.len].iter().map(|id| id.to_f64());
+            self.scratch.recorder.saw(ids.filter(|id| *id != NONE).map(|id| id as u32));
+            if self.runs.missed.count > 0 {
                 self.scratch.recorder.saw_background();
             }
         }
-        for k in 0..self.groups.missed {
-            let i = self.groups.order[k] as usize;
-            let slot = at.rays.slot[i].to_f64() as usize;
-            for c in 0..3 {
-                let seen = at.rays.weight[c][i].to_f64() * self.world.background[c];
-                let sum = &mut self.radiance[c][slot];
-                *sum = L::Elem::from_f64(sum.to_f64() + seen);
-            }
-        }
-        let mut first = self.groups.missed;
-        for g in 0..self.groups.found.len() {
+        // Camera rays stand in the order of their pixels, one for each, and are the first to add to them.
+        let mut gathered = Gathered { radiance: &mut self.radiance, first: level == 0, in_order: level == 0 };
+        background::<L>(self.world, &self.runs.missed, &at.rays, &mut gathered);
+        for run in self.runs.met() {
             if self.cancel.load(Relaxed) {
                 return;
             }
-            let (id, count) = self.groups.found[g];
-            let members = &self.groups.order[first..first + count as usize];
-            first += count as usize;
-            let whole = count as usize == at.rays.len;
-            if !whole {
-                gather_run(&at.rays, &at.hits, members, &mut at.run, &mut at.run_hits);
+            let packed = run.is_sparse(L::WIDTH);
+            if packed {
+                pack::<L>(&at.rays, &at.hits, run, &mut at.run, &mut at.run_hits);
+                self.packed.whole(run.count, L::WIDTH);
             }
-            let (rays, hits) = if whole { (&at.rays, &at.hits) } else { (&at.run, &at.run_hits) };
+            gathered.in_order = level == 0 && !packed;
+            let (rays, hits) = if packed { (&at.run, &at.run_hits) } else { (&at.rays, &at.hits) };
+            let groups: &[LaneGroup] = if packed { &self.packed.groups } else { &run.groups };
             let spawn = level < self.max_depth;
-            super::shade::shade::<L, AT_EYE>(
-                self.world,
-                Hits { id, rays, t: &hits.t, part: &hits.part },
-                &mut self.scratch,
-                &mut self.radiance,
-                Children { mirrored: &mut at.mirrored, transmitted: &mut at.transmitted, spawn },
-                &mut self.counts.shadow,
+            let hits = Hits { flock: run.flock, rays, hits, groups };
+            let children = Children { mirrored: &mut at.mirrored, transmitted: &mut at.transmitted, spawn };
+            L::vectorize(
+                #[inline(always)]
+                || {
+                    shade::<L, AT_EYE>(
+                        self.world,
+                        hits,
+                        &mut self.scratch,
+                        &mut gathered,
+                        children,
+                        &mut self.counts.shadow,
+                    )
+                },
             );
         }
     }
 }
 
-/// Finds the nearest crossing in front of each ray's origin.
+/// What rays see that met nothing.
 #[inline(always)]
-pub fn nearest<L: Lane, const AT_EYE: bool>(
-    world: &World,
-    candidates: &Candidates,
+fn background<L: Lane>(world: &World, missed: &Run, rays: &RayBatch<L::Elem>, gathered: &mut Gathered<'_, L::Elem>) {
+    for group in &missed.groups {
+        let g = group.first as usize;
+        let seen = three!(c => L::load(&rays.weight[c][g..]) * L::splat(world.background[c]));
+        gathered.add(group, &rays.slot, seen);
+    }
+}
+
+/// Brings the rays of a run and their hits together.
+#[inline(always)]
+fn pack<L: Lane>(
     rays: &RayBatch<L::Elem>,
-    hits: &mut HitColumns<L::Elem>,
+    hits: &HitColumns<L::Elem>,
+    run: &Run,
+    to: &mut RayBatch<L::Elem>,
+    hits_to: &mut HitColumns<L::Elem>,
 ) {
-    let mut g = 0;
-    while g < rays.len {
-        let d = load3::<L>(&rays.d, g);
-        let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
-        let start = Start {
-            primitive: L::load(&rays.source[g..]),
-            part: L::load(&rays.source_part[g..]),
-            outward: L::one().same(L::load(&rays.outward[g..])),
-        };
-        let mut best = Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() };
-        for &k in &candidates.ids {
-            best.test::<AT_EYE>(world, k, o, d, &start);
+    to.len = 0;
+    for group in &run.groups {
+        let (g, at, m) = (group.first as usize, to.len, L::Mask::from_bits(group.bits));
+        for c in 0..3 {
+            L::load(&rays.o[c][g..]).compress(m, &mut to.o[c][at..]);
+            L::load(&rays.d[c][g..]).compress(m, &mut to.d[c][at..]);
+            L::load(&rays.weight[c][g..]).compress(m, &mut to.weight[c][at..]);
         }
-        if candidates.tree {
-            world.bvh.traverse(o, d, best.t, |k| {
-                best.test::<AT_EYE>(world, k, o, d, &start);
-                best.t
-            });
-        }
-        best.t.store(&mut hits.t[g..]);
-        best.id.store(&mut hits.id[g..]);
-        best.part.store(&mut hits.part[g..]);
-        g += L::WIDTH;
+        L::load(&rays.slot[g..]).compress(m, &mut to.slot[at..]);
+        L::load(&hits.t[g..]).compress(m, &mut hits_to.t[at..]);
+        L::load(&hits.id[g..]).compress(m, &mut hits_to.id[at..]);
+        L::load(&hits.part[g..]).compress(m, &mut hits_to.part[at..]);
+        to.len += group.bits.count_ones() as usize;
     }
-}
-
-/// Where rays start.
-struct Start<R: Real> {
-    /// The primitive, or [`NONE`].
-    primitive: R,
-    part: R,
-    outward: R::Mask,
-}
-
-/// Keeps the nearest crossing; of two at the same t, that of the primitive with the lower number.
-struct Nearest<R> {
-    t: R,
-    id: R,
-    part: R,
-    current: R,
-}
-
-impl<R: Real> Nearest<R> {
-    /// Tests primitive `k`.
-    #[inline(always)]
-    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, o: [R; 3], d: [R; 3], start: &Start<R>) {
-        self.current = R::splat(k as f64);
-        let here = start.primitive.same(self.current);
-        let own = if AT_EYE { None } else { Some(Own { here, part: start.part, outward: start.outward }) };
-        world.crossings::<R, AT_EYE>(k, (o, d), own, self);
-    }
-}
-
-impl<R: Real> Visit<R> for Nearest<R> {
-    #[inline(always)]
-    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
-        let nearer = t.lt(self.t) | (t.same(self.t) & self.current.lt(self.id));
-        let m = valid & R::zero().lt(t) & nearer;
-        self.t = R::select(m, t, self.t);
-        self.id = R::select(m, self.current, self.id);
-        self.part = R::select(m, part, self.part);
-    }
-}
-
-/// Sorts a batch by what its rays met.
-struct Groups {
-    /// Indices of rays: first those that met nothing, then object by object in the order of `found`.
-    order: Column<u32>,
-    missed: usize,
-    /// Objects in the order of their first ray, and how many rays met them.
-    found: Vec<(u32, u32)>,
-    group_of: Vec<u32>,
-    next: Vec<u32>,
-}
-
-impl Groups {
-    fn new(n: usize) -> Groups {
-        Groups {
-            order: vec![0; n].into_boxed_slice(),
-            missed: 0,
-            found: Vec::with_capacity(n),
-            group_of: vec![0; n],
-            next: Vec::with_capacity(n),
-        }
-    }
-
-    fn sort<E: Elem>(&mut self, ids: &[E], n: usize) {
-        self.found.clear();
-        self.missed = 0;
-        let mut last = 0;
-        for (i, id) in ids[..n].iter().enumerate() {
-            let id = id.to_f64();
-            if id == NONE {
-                self.group_of[i] = u32::MAX;
-                self.order[self.missed] = i as u32;
-                self.missed += 1;
-                continue;
-            }
-            let id = id as u32;
-            // Neighbouring rays mostly meet the same object.
-            if self.found.get(last).is_none_or(|f| f.0 != id) {
-                last = self.found.iter().position(|f| f.0 == id).unwrap_or_else(|| {
-                    self.found.push((id, 0));
-                    self.found.len() - 1
-                });
-            }
-            self.found[last].1 += 1;
-            self.group_of[i] = last as u32;
-        }
-        if self.found.len() == 1 && self.missed == 0 {
-            return; // the whole batch is one run, used where it lies
-        }
-        self.next.clear();
-        let mut at = self.missed as u32;
-        for (_, count) in &self.found {
-            self.next.push(at);
-            at += count;
-        }
-        for (i, &group) in self.group_of[..n].iter().enumerate() {
-            if group != u32::MAX {
-                let at = &mut self.next[group as usize];
-                self.order[*at as usize] = i as u32;
-                *at += 1;
-            }
-        }
-    }
-}
-
-fn gather_run<E: Elem>(
-    rays: &RayBatch<E>,
-    hits: &HitColumns<E>,
-    members: &[u32],
-    run: &mut RayBatch<E>,
-    run_hits: &mut HitColumns<E>,
-) {
-    let pick = |from: &[E], to: &mut [E]| {
-        for (out, &i) in to.iter_mut().zip(members) {
-            *out = from[i as usize];
-        }
-    };
-    for c in 0..3 {
-        pick(&rays.o[c], &mut run.o[c]);
-        pick(&rays.d[c], &mut run.d[c]);
-        pick(&rays.weight[c], &mut run.weight[c]);
-    }
-    pick(&rays.slot, &mut run.slot);
-    pick(&hits.t, &mut run_hits.t);
-    pick(&hits.part, &mut run_hits.part);
-    run.len = members.len();
 }

@@ -35,6 +35,8 @@ pub struct World {
     pub(super) triangles: Vec<TriangleData>,
     pub(super) spaces: Vec<MadeSpace>,
     pub(super) unbounded: Vec<Unbounded>,
+    /// By primitive; see [`World::flock`].
+    pub(super) flocks: Vec<u32>,
     pub(super) bvh: Bvh,
     pub(super) materials: Vec<Surfacing>,
     pub(super) patterns: PatternTable,
@@ -143,6 +145,7 @@ impl World {
             triangles: Vec::new(),
             spaces: Vec::new(),
             unbounded: Vec::new(),
+            flocks: Vec::new(),
             bvh: Bvh::default(),
             materials: Vec::new(),
             patterns: PatternTable::default(),
@@ -191,6 +194,7 @@ impl World {
             return None;
         }
         world.find_touched_surfaces();
+        world.find_flocks();
         Some((world, keys))
     }
 
@@ -229,7 +233,7 @@ impl World {
                 MadeDetail {
                     made_normal_from_world: transposed(&made.world_from_object),
                     world_normal_from_made: transposed(&back),
-                    from_centre: three(|i| (placed.made_from_local.shift[i] - made.centre[i]).round()),
+                    from_centre: three!(i => (placed.made_from_local.shift[i] - made.centre[i]).round()),
                     half_height: made.half_height,
                 }
             });
@@ -328,7 +332,7 @@ impl World {
     pub fn without_tree(mut self) -> World {
         // Planes of which nothing can say that a ray doesn't meet them.
         let everywhere = |(id, _): (u32, Bounds)| Unbounded { id, n: [0.0; 3], offset: 0.0 };
-        self.unbounded.extend(self.bvh.leaves().iter().map(everywhere));
+        self.unbounded.extend(self.bvh.leaves().map(everywhere));
         self.bvh = Bvh::default();
         self
     }
@@ -401,7 +405,7 @@ fn middle(shape: &crate::scene::Shape) -> ([Dd; 3], f64) {
         let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         // The middle of two numbers far out may lie between two numbers.
         let half = ((hi - lo) * 0.5).to_array();
-        (three(|i| exactly(&lo)[i] + Dd::new(half[i])), half[1])
+        (three!(i => exactly(&lo)[i] + Dd::new(half[i])), half[1])
     };
     let (centre, half) = match shape {
         Sphere { at, r } => (exactly(at), *r),

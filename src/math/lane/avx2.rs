@@ -136,6 +136,15 @@ macro_rules! register {
                 unsafe { $name($max(self.0, o.0)) }
             }
             common!(@each $mask, $width);
+            #[inline(always)]
+            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+                #[inline(never)]
+                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
+                    f()
+                }
+                unsafe { compiled_for_it(f) }
+            }
         }
 
         impl Lane for $name {
@@ -160,30 +169,73 @@ macro_rules! register {
                     bits &= bits - 1;
                 }
             }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-                #[inline(never)]
-                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
-                    f()
-                }
-                unsafe { compiled_for_it(f) }
-            }
         }
     };
 }
 
 register!(
-    F64x4, Mask4, f64, i64, 4, __m256d, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_set1_pd,
-    _mm256_setzero_pd, _mm256_loadu_pd, _mm256_storeu_pd, _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_sqrt_pd,
-    _mm256_floor_pd, _mm256_xor_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_or_pd, _mm256_cmp_pd, _mm256_blendv_pd,
-    _mm256_movemask_pd, _mm256_min_pd, _mm256_max_pd, _mm256_set1_epi64x, _mm256_loadu_si256, _mm256_cmpeq_epi64,
+    F64x4,
+    Mask4,
+    f64,
+    i64,
+    4,
+    __m256d,
+    _mm256_add_pd,
+    _mm256_sub_pd,
+    _mm256_mul_pd,
+    _mm256_div_pd,
+    _mm256_set1_pd,
+    _mm256_setzero_pd,
+    _mm256_loadu_pd,
+    _mm256_storeu_pd,
+    _mm256_fmadd_pd,
+    _mm256_fmsub_pd,
+    _mm256_sqrt_pd,
+    _mm256_floor_pd,
+    _mm256_xor_pd,
+    _mm256_and_pd,
+    _mm256_andnot_pd,
+    _mm256_or_pd,
+    _mm256_cmp_pd,
+    _mm256_blendv_pd,
+    _mm256_movemask_pd,
+    _mm256_min_pd,
+    _mm256_max_pd,
+    _mm256_set1_epi64x,
+    _mm256_loadu_si256,
+    _mm256_cmpeq_epi64,
     _mm256_castsi256_pd
 );
 register!(
-    F32x8, Mask8, f32, i32, 8, __m256, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_set1_ps,
-    _mm256_setzero_ps, _mm256_loadu_ps, _mm256_storeu_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_sqrt_ps,
-    _mm256_floor_ps, _mm256_xor_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_or_ps, _mm256_cmp_ps, _mm256_blendv_ps,
-    _mm256_movemask_ps, _mm256_min_ps, _mm256_max_ps, _mm256_set1_epi32, _mm256_loadu_si256, _mm256_cmpeq_epi32,
+    F32x8,
+    Mask8,
+    f32,
+    i32,
+    8,
+    __m256,
+    _mm256_add_ps,
+    _mm256_sub_ps,
+    _mm256_mul_ps,
+    _mm256_div_ps,
+    _mm256_set1_ps,
+    _mm256_setzero_ps,
+    _mm256_loadu_ps,
+    _mm256_storeu_ps,
+    _mm256_fmadd_ps,
+    _mm256_fmsub_ps,
+    _mm256_sqrt_ps,
+    _mm256_floor_ps,
+    _mm256_xor_ps,
+    _mm256_and_ps,
+    _mm256_andnot_ps,
+    _mm256_or_ps,
+    _mm256_cmp_ps,
+    _mm256_blendv_ps,
+    _mm256_movemask_ps,
+    _mm256_min_ps,
+    _mm256_max_ps,
+    _mm256_set1_epi32,
+    _mm256_loadu_si256,
+    _mm256_cmpeq_epi32,
     _mm256_castsi256_ps
 );

@@ -124,6 +124,15 @@ macro_rules! register {
                 unsafe { $name($max(self.0, o.0)) }
             }
             common!(@each $mask, $width);
+            #[inline(always)]
+            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+                #[inline(never)]
+                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
+                    f()
+                }
+                unsafe { compiled_for_it(f) }
+            }
         }
 
         impl Lane for $name {
@@ -143,28 +152,63 @@ macro_rules! register {
                 // Packed in a register and stored whole: storing packed is slow on some processors.
                 unsafe { $store(dst[..$width].as_mut_ptr(), $compress(m.0, self.0)) }
             }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-                #[inline(never)]
-                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
-                    f()
-                }
-                unsafe { compiled_for_it(f) }
-            }
         }
     };
 }
 
 register!(
-    F64x8, Mask8, f64, u8, 8, __m512d, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_set1_pd,
-    _mm512_loadu_pd, _mm512_storeu_pd, _mm512_fmadd_pd, _mm512_fmsub_pd, _mm512_sqrt_pd, _mm512_roundscale_pd,
-    _mm512_xor_pd, _mm512_and_pd, _mm512_andnot_pd, _mm512_or_pd, _mm512_cmp_pd_mask, _mm512_mask_blend_pd,
-    _mm512_maskz_compress_pd, _mm512_min_pd, _mm512_max_pd
+    F64x8,
+    Mask8,
+    f64,
+    u8,
+    8,
+    __m512d,
+    _mm512_add_pd,
+    _mm512_sub_pd,
+    _mm512_mul_pd,
+    _mm512_div_pd,
+    _mm512_set1_pd,
+    _mm512_loadu_pd,
+    _mm512_storeu_pd,
+    _mm512_fmadd_pd,
+    _mm512_fmsub_pd,
+    _mm512_sqrt_pd,
+    _mm512_roundscale_pd,
+    _mm512_xor_pd,
+    _mm512_and_pd,
+    _mm512_andnot_pd,
+    _mm512_or_pd,
+    _mm512_cmp_pd_mask,
+    _mm512_mask_blend_pd,
+    _mm512_maskz_compress_pd,
+    _mm512_min_pd,
+    _mm512_max_pd
 );
 register!(
-    F32x16, Mask16, f32, u16, 16, __m512, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps, _mm512_div_ps, _mm512_set1_ps,
-    _mm512_loadu_ps, _mm512_storeu_ps, _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_sqrt_ps, _mm512_roundscale_ps,
-    _mm512_xor_ps, _mm512_and_ps, _mm512_andnot_ps, _mm512_or_ps, _mm512_cmp_ps_mask, _mm512_mask_blend_ps,
-    _mm512_maskz_compress_ps, _mm512_min_ps, _mm512_max_ps
+    F32x16,
+    Mask16,
+    f32,
+    u16,
+    16,
+    __m512,
+    _mm512_add_ps,
+    _mm512_sub_ps,
+    _mm512_mul_ps,
+    _mm512_div_ps,
+    _mm512_set1_ps,
+    _mm512_loadu_ps,
+    _mm512_storeu_ps,
+    _mm512_fmadd_ps,
+    _mm512_fmsub_ps,
+    _mm512_sqrt_ps,
+    _mm512_roundscale_ps,
+    _mm512_xor_ps,
+    _mm512_and_ps,
+    _mm512_andnot_ps,
+    _mm512_or_ps,
+    _mm512_cmp_ps_mask,
+    _mm512_mask_blend_ps,
+    _mm512_maskz_compress_ps,
+    _mm512_min_ps,
+    _mm512_max_ps
 );

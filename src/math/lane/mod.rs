@@ -66,12 +66,12 @@ macro_rules! common {
             #[inline(never)]
             fn in_double_double<const N: usize, const M: usize>(
                 doubt: u32,
-                given: [[$elem; $width]; N],
+                given: &[[$elem; $width]; N],
                 rough: &mut [[$elem; $width]; M],
                 mut f: impl FnMut([crate::math::Dd; N]) -> [crate::math::Dd; M],
             ) {
                 for i in (0..$width).filter(|i| doubt >> i & 1 == 1) {
-                    for (to, from) in rough.iter_mut().zip(f(given.map(|x| crate::math::Dd::new(x[i] as f64)))) {
+                    for (to, from) in rough.iter_mut().zip(f(std::array::from_fn(|k| crate::math::Dd::new(given[k][i] as f64)))) {
                         to[i] = from.hi as $elem;
                     }
                 }
@@ -108,9 +108,19 @@ macro_rules! common {
             rough: [Self; M],
             f: impl FnMut([crate::math::Dd; N]) -> [crate::math::Dd; M],
         ) -> [Self; M] {
-            let mut numbers = rough.map(Self::to_array);
-            Self::in_double_double(crate::math::Mask::bits(doubt), given.map(Self::to_array), &mut numbers, f);
-            numbers.map(|x| crate::math::Lane::load(&x))
+            let (mut numbers, mut all_given) = ([[0.0; $width]; M], [[0.0; $width]; N]);
+            for (to, from) in numbers.iter_mut().zip(rough) {
+                *to = from.to_array();
+            }
+            for (to, from) in all_given.iter_mut().zip(given) {
+                *to = from.to_array();
+            }
+            Self::in_double_double(crate::math::Mask::bits(doubt), &all_given, &mut numbers, f);
+            let mut result = rough;
+            for (to, from) in result.iter_mut().zip(&numbers) {
+                *to = crate::math::Lane::load(from);
+            }
+            result
         }
     };
 }
@@ -178,7 +188,12 @@ mod tests {
                 wide(a, b, c).store(&mut out);
                 for i in 0..L::WIDTH {
                     let alone = one(v[0][i], v[1][i], v[2][i]);
-                    assert!(same(out[i], alone), "operation {n} of {:?}: {:?}, alone {alone:?}", v.each_ref().map(|v| v[i]), out[i]);
+                    assert!(
+                        same(out[i], alone),
+                        "operation {n} of {:?}: {:?}, alone {alone:?}",
+                        v.each_ref().map(|v| v[i]),
+                        out[i]
+                    );
                 }
             }
             let m = a.lt(b);

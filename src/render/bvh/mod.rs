@@ -6,13 +6,15 @@
 
 mod build;
 pub(super) mod node;
+mod slabs;
 mod split;
 mod walk;
 
 use super::bounds::Bounds;
-use crate::math::Lane;
-use node::{Child, Fit, Node};
+use crate::math::{Lane, Mask};
+use node::{Box4, Child, Fit, Node};
 use rayon::prelude::*;
+use slabs::Slabs;
 use split::Item;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use walk::Beam;
@@ -142,14 +144,20 @@ impl Bvh {
         }
     }
 
-    /// Calls `test(primitive)` for every primitive whose leaf's box rays meet before their `t_max`, nearer boxes first.
-    /// `test` gives the lanes' new `t_max`; a lane is finished when that is not positive.
+    /// Calls `test(primitive)` once for every primitive whose leaf's box a ray meets before its `t_max`, nearer boxes first.
+    /// `test` gives the lanes' new `t_max`; a lane is finished when that is not positive, and one that begins so has no ray.
     #[inline(always)]
     pub fn traverse<L: Lane>(&self, o: [L; 3], d: [L; 3], t_max: L, test: impl FnMut(u32) -> L) {
-        let t = walk::farthest(t_max);
-        if t > 0.0 {
-            let spread = Spread::of(o, d, t_max);
-            self.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t, &mut OneByOne { test, t_max });
+        let alive = L::zero().lt(t_max);
+        if alive.any() {
+            let spread = Spread::of(o, d, alive);
+            let slabs = (L::WIDTH > 1 && !spread.is_narrow()).then(
+                #[inline(always)]
+                || Slabs::new(o, d),
+            );
+            let t = farthest(t_max, alive);
+            let mut leaves = OneByOne { test, t_max, alive, slabs, fit: self.fit };
+            self.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t, &mut leaves);
         }
     }
 
@@ -167,9 +175,13 @@ impl Bvh {
 }
 
 /// Leaves whose primitives a function tests one by one.
-struct OneByOne<L, F> {
+struct OneByOne<L: Lane, F> {
     test: F,
     t_max: L,
+    alive: L::Mask,
+    /// Where rays run apart: each for itself.
+    slabs: Option<Slabs<L>>,
+    fit: Fit,
 }
 
 impl<L: Lane, F: FnMut(u32) -> L> Leaves for OneByOne<L, F> {
@@ -178,6 +190,147 @@ impl<L: Lane, F: FnMut(u32) -> L> Leaves for OneByOne<L, F> {
         for id in ids {
             self.t_max = (self.test)(*id);
         }
-        walk::farthest(self.t_max)
+        farthest(self.t_max, self.alive)
+    }
+    #[inline(always)]
+    fn may_meet(&self, b: impl FnOnce() -> Box4) -> bool {
+        match &self.slabs {
+            Some(slabs) => (slabs.meet(&self.fit.grow(&b()), self.t_max) & self.alive).any(),
+            None => true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::hash::KeyedHash;
+    use crate::render::bounds::{larger, smaller};
+
+    fn random(i: u64, k: u64) -> f64 {
+        KeyedHash::new().with(i).with(k).unit()
+    }
+
+    /// Boxes of many sizes in a room of `size` that begins `away` from the origin; every fourth is flat, every fifth a copy.
+    fn boxes(n: u64, size: f64, away: f64) -> Vec<(u32, Bounds)> {
+        let one = |i: u64| {
+            let i = if i % 5 == 4 { i - 1 } else { i };
+            let c = [0, 1, 2].map(|k| away + size * random(i, k));
+            let mut half = [0, 1, 2].map(|k| size * 0.05 * random(i, 4 + k) * random(i, 7));
+            if i % 4 == 3 {
+                half[(i / 4 % 3) as usize] = 0.0;
+            }
+            Bounds { lo: [0, 1, 2].map(|k| c[k] - half[k]), hi: [0, 1, 2].map(|k| c[k] + half[k]) }
+        };
+        (0..n).map(|i| (i as u32, one(i))).collect()
+    }
+
+    /// Where a ray enters a box, in plain arithmetic, if it surely meets it: not just by rounding.
+    fn enters(b: &Bounds, o: [f64; 3], d: [f64; 3]) -> Option<f64> {
+        let (mut near, mut far) = (0.0, f64::INFINITY);
+        for i in 0..3 {
+            let (t0, t1) = ((b.lo[i] - o[i]) / d[i], (b.hi[i] - o[i]) / d[i]);
+            if t0.is_nan() || t1.is_nan() {
+                continue; // along a face
+            }
+            (near, far) = (larger(near, smaller(t0, t1)), smaller(far, larger(t0, t1)));
+        }
+        (near <= far).then_some(near)
+    }
+
+    fn ray(i: u64, size: f64, away: f64) -> ([f64; 3], [f64; 3]) {
+        let far = if i % 3 == 0 { 1e4 } else { 1.0 };
+        let o = [0, 1, 2].map(|k| if i % 7 == 0 { 0.0 } else { away + far * size * (random(i, 20 + k) - 0.2) });
+        let target = [0, 1, 2].map(|k| away + size * random(i, 30 + k));
+        let mut d = [0, 1, 2].map(|k| target[k] - o[k]);
+        if i % 4 == 1 {
+            d[(i / 4 % 3) as usize] = if i % 8 == 1 { 0.0 } else { -0.0 };
+        }
+        (o, d)
+    }
+
+    #[test]
+    fn a_search_for_the_nearest_box_finds_what_testing_all_finds() {
+        let mut met = 0;
+        for (power, away) in [(0, 0.0), (0, -0.5), (400, 0.0), (-400, -0.3), (0, 1e7), (-60, 1.0), (12, -1e12)] {
+            let size = 2f64.powi(power);
+            let away = away * size;
+            for n in [1, 2, 7, 60, 600, 5000] {
+                let all = boxes(n, size, away);
+                for batched_from in [u32::MAX, n as u32 / 2, 0] {
+                    let tree = Bvh::build_unless(all.clone(), batched_from, &AtomicBool::new(false)).expect("built");
+                    assert_eq!(tree.len(), all.len());
+                    for i in 0..200 {
+                        let (o, d) = ray(i + n, size, away);
+                        let nearer = |best: Option<(f64, u32)>, (id, b): &(u32, Bounds)| match (best, enters(b, o, d)) {
+                            (Some((t, k)), Some(new)) if new < t || (new == t && *id < k) => Some((new, *id)),
+                            (None, Some(new)) => Some((new, *id)),
+                            (best, _) => best,
+                        };
+                        let expected = all.iter().fold(None, nearer);
+                        let mut found = None;
+                        tree.traverse(o, d, f64::INFINITY, |id| {
+                            found = nearer(found, &all[id as usize]);
+                            found.map_or(f64::INFINITY, |f| f.0)
+                        });
+                        met += found.is_some() as u32;
+                        assert_eq!(found, expected, "{n} boxes of 2^{power}, {away} away: ray {i}");
+                    }
+                }
+            }
+        }
+        assert!(met > 5_000, "{met}");
+    }
+
+    #[test]
+    fn every_primitive_is_found_once_and_only_near_what_it_is_asked_for() {
+        let all = boxes(3000, 100.0, -50.0);
+        let tree = Bvh::build(all.clone());
+        let mut once: Vec<u32> = tree.leaves().map(|l| l.0).collect();
+        once.sort();
+        assert!(once.iter().copied().eq(0..3000));
+        assert!(tree.leaves().all(|(id, b)| b.union(all[id as usize].1) == b));
+        for k in 0..100 {
+            let region = Bounds::around([0, 1, 2].map(|c| random(k, 90 + c) * 100.0 - 50.0), [4.0; 3]);
+            let mut found = Vec::new();
+            tree.gather(
+                |b| b.overlaps(&region),
+                |id| {
+                    found.push(id);
+                    true
+                },
+            );
+            found.sort();
+            let expected: Vec<u32> = all.iter().filter(|l| l.1.overlaps(&region)).map(|l| l.0).collect();
+            assert_eq!(found, expected, "rounding decides in none of these");
+        }
+    }
+
+    #[test]
+    fn the_tree_is_the_same_for_any_number_of_threads() {
+        let all = boxes(30_000, 10.0, 0.0);
+        let built = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            format!("{:?}", pool.install(|| Bvh::build_unless(all.clone(), 9_000, &AtomicBool::new(false))))
+        };
+        assert!(built(1) == built(2) && built(1) == built(5));
+    }
+
+    #[test]
+    fn coincident_boxes_end_in_a_tree_too() {
+        for b in [Bounds::around([1.0; 3], [0.5; 3]), Bounds { lo: [0.0; 3], hi: [0.0; 3] }] {
+            let tree = Bvh::build((0..10_000).map(|i| (i, b)).collect());
+            let mut n = 0;
+            tree.traverse([0.0; 3], [1.0; 3], f64::INFINITY, |_| {
+                n += 1;
+                f64::INFINITY
+            });
+            assert_eq!((tree.leaves().count(), n), (10_000, 10_000));
+        }
+    }
+
+    #[test]
+    fn a_cancelled_build_gives_no_tree() {
+        assert!(Bvh::build_unless(boxes(50_000, 1.0, 0.0), u32::MAX, &AtomicBool::new(true)).is_none());
     }
 }

@@ -4,7 +4,7 @@
 //! half the bytes are half the time. So a scene may be as large or as small as `f64` allows.
 
 use super::walk::Registers;
-use crate::math::{Lane, Mask, Real};
+use crate::math::{Lane, Mask};
 use crate::render::bounds::{Bounds, larger};
 
 /// Children of a node.
@@ -129,10 +129,9 @@ impl Node {
 
     /// Adds to the numbers of the children that are nodes, and to the places of those that are leaves.
     pub fn renumber(&mut self, nodes: usize, leaves: usize) {
-        for slot in 0..WIDE {
+        for slot in (0..WIDE).filter(|&slot| self.is_used(slot)) {
             let child = self.child(slot);
             let moved = match child.is_leaf() {
-                true if child == Child::NONE => child,
                 true => Child::leaf(child.range().start + leaves, child.range().len()),
                 false => Child::node(child.at() + nodes),
             };
@@ -147,7 +146,11 @@ impl Node {
 
     /// The slots that are used.
     pub fn children(&self) -> impl Iterator<Item = (usize, Child)> {
-        (0..WIDE).map(|slot| (slot, self.child(slot))).filter(|(slot, _)| self.rows[0][*slot] < f32::INFINITY)
+        (0..WIDE).filter(|&slot| self.is_used(slot)).map(|slot| (slot, self.child(slot)))
+    }
+
+    fn is_used(&self, slot: usize) -> bool {
+        self.rows[0][slot] < f32::INFINITY
     }
 
     /// Where rays enter each of the eight boxes, the bits of what is in them, and one bit for each box that they meet before

@@ -5,7 +5,7 @@
 //! the same few instructions for one ray or sixteen, and all roundings are in the beam: a box is missed only if every
 //! ray surely misses it.
 
-use super::node::{Child, Fit, Node, power_below};
+use super::node::{Box4, Child, Fit, Node, power_below};
 use crate::math::{Elem, Lane, Mask};
 use crate::render::bounds::{Bounds, larger, smaller};
 use std::mem::MaybeUninit;
@@ -64,6 +64,12 @@ impl<W: Lane<Elem = f32>> Registers<W> {
 pub trait Leaves {
     /// Tests primitives, one to eight of them; gives the new `t_max`. The search ends when that isn't positive.
     fn test(&mut self, ids: &[u32]) -> f64;
+    /// Whether a ray may meet the box, in the tree's units, for those who know better than their beam.
+    #[inline(always)]
+    fn may_meet(&self, b: impl FnOnce() -> Box4) -> bool {
+        let _ = b;
+        true
+    }
 }
 
 /// Origins and directions of rays: smallest and largest, by axis.
@@ -78,9 +84,10 @@ pub struct Spread {
 /// More lanes than any register has.
 const LANES: usize = 16;
 
-/// The largest of a register's numbers.
+/// The largest number in the lanes of `alive`.
 #[inline(always)]
-pub fn farthest<L: Lane>(t: L) -> f64 {
+pub fn farthest<L: Lane>(t: L, alive: L::Mask) -> f64 {
+    let t = L::select(alive, t, L::splat(f64::NEG_INFINITY));
     let mut all = [L::Elem::default(); LANES];
     t.store(&mut all);
     let mut most = f64::NEG_INFINITY;
@@ -91,14 +98,29 @@ pub fn farthest<L: Lane>(t: L) -> f64 {
 }
 
 impl Spread {
-    /// Of the lanes whose `t_max` is positive.
+    /// Of one ray.
     #[inline(always)]
-    pub fn of<L: Lane>(o: [L; 3], d: [L; 3], t_max: L) -> Spread {
-        let alive = L::zero().lt(t_max).bits();
+    pub fn of_one(o: [f64; 3], d: [f64; 3]) -> Spread {
+        Spread { o: [[o[0]; 2], [o[1]; 2], [o[2]; 2]], d: [[d[0]; 2], [d[1]; 2], [d[2]; 2]] }
+    }
+
+    /// Of the lanes of `alive`.
+    #[inline(always)]
+    pub fn of<L: Lane>(o: [L; 3], d: [L; 3], alive: L::Mask) -> Spread {
+        let alive = alive.bits();
         Spread {
             o: [range(o[0], alive), range(o[1], alive), range(o[2], alive)],
             d: [range(d[0], alive), range(d[1], alive), range(d[2], alive)],
         }
+    }
+}
+
+impl Spread {
+    /// Whether the rays run so much alike that a box which the beam meets is met by most of them.
+    #[inline(always)]
+    pub fn is_narrow(&self) -> bool {
+        let alike = |[least, most]: [f64; 2]| (least >= 0.0 && most <= 2.0 * least) || (most <= 0.0 && least >= 2.0 * most);
+        alike(self.d[0]) && alike(self.d[1]) && alike(self.d[2])
     }
 }
 
@@ -292,18 +314,25 @@ pub fn walk<W: Lane<Elem = f32>>(nodes: &[Node], ids: &[u32], beam: &Beam, t_max
             t_max = beam.reach(leaves.test(ids.get(child.range()).unwrap_or_default()));
         } else if let Some(node) = nodes.get(child.at()) {
             let (near, children, mut met) = node.meet(&registers, t_max);
-            if met != 0 {
+            let base = stack.len;
+            let mut nearest = u64::MAX;
+            while met != 0 {
                 let k = met.trailing_zeros() as usize & 7;
                 met &= met - 1;
-                let (mut nearest, base) = (entry(near[k], Child(children[k].to_bits())), stack.len);
-                while met != 0 {
-                    let k = met.trailing_zeros() as usize & 7;
-                    met &= met - 1;
-                    let other = entry(near[k], Child(children[k].to_bits()));
-                    let (a, b) = if other < nearest { (other, nearest) } else { (nearest, other) };
-                    nearest = a;
+                if !leaves.may_meet(
+                    #[inline(always)]
+                    || node.box_of(k),
+                ) {
+                    continue;
+                }
+                let other = entry(near[k], Child(children[k].to_bits()));
+                let (a, b) = if other < nearest { (other, nearest) } else { (nearest, other) };
+                nearest = a;
+                if b != u64::MAX {
                     stack.insert(b, base);
                 }
+            }
+            if nearest != u64::MAX {
                 child = Child(nearest as u32);
                 continue;
             }

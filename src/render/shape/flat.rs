@@ -2,6 +2,7 @@
 
 use super::{Point, Visit};
 use crate::math::Real;
+use crate::math::real::three;
 use crate::render::ray::{LocalRay, Own};
 
 /// Where the ray passes y = 0; NaN or infinite where it runs along.
@@ -29,8 +30,9 @@ pub(super) fn disc_crossing<R: Real>(
     // Rounding t alone moves the point by an ulp of the distance, which far away is more than the disc: so the rest that the
     // rounded t leaves of the height goes on as a correction.
     let rest = -(ray.at(t)[1] / ray.d[1]);
-    let across = |i: usize| t.mul_add(ray.d[i], ray.o[i]) + rest.mul_add(ray.d[i], t.mul_add(ray.d_lo[i], ray.o_lo[i]));
-    let (x, z) = (across(0), across(2));
+    let [x, _, z] = three!(
+        i => t.mul_add(ray.d[i], ray.o[i]) + rest.mul_add(ray.d[i], t.mul_add(ray.d_lo[i], ray.o_lo[i]))
+    );
     let rho2 = x.mul_add(x, z * z);
     let (r, hole) = (R::splat(r), R::splat(hole));
     let valid = is_met(ray, own) & rho2.le(r * r) & (hole * hole).le(rho2);

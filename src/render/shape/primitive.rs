@@ -44,6 +44,22 @@ pub enum Kind {
     Triangle(u32),
 }
 
+impl Kind {
+    /// Whether a ray that leaves it to the outside never meets it again.
+    pub fn is_left_for_good(&self) -> bool {
+        match self {
+            Kind::Sphere(_) | Kind::Plane | Kind::Disc { .. } | Kind::Cuboid(_) | Kind::Triangle(_) => true,
+            Kind::Tube(tube) => tube.caps,
+            Kind::Ring(_) => false,
+        }
+    }
+
+    /// Whether shading normals may differ from geometric ones.
+    pub fn may_be_smooth(&self) -> bool {
+        matches!(self, Kind::Triangle(_))
+    }
+}
+
 /// The world's tables that primitives refer to.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables<'w> {
@@ -110,7 +126,7 @@ impl Primitive {
         if let Kind::Triangle(i) = self.kind {
             let tri = &tables.triangles[i as usize];
             let (point, local) = triangle::point(tri, o, d);
-            let offset = dot(each3(point.n, |x| x.abs()), point.error);
+            let offset = dot(each3!(point.n, x => x.abs()), point.error);
             let ns = triangle::shading_normal(tri, local, point.n);
             return Surface { p: point.p, n: point.n, ns, offset, local };
         }
@@ -128,7 +144,7 @@ impl Primitive {
             p: self.frame.point_to_world(tables.maps, point.p),
             n,
             ns: n,
-            offset: dot(each3(n, |x| x.abs()), error),
+            offset: dot(each3!(n, x => x.abs()), error),
             local: point.p,
         }
     }

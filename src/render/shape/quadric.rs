@@ -82,6 +82,13 @@ pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadr
     // A form that falls off in both directions (a cone seen steeply) always has crossings; a negative discriminant there
     // is a rounding error at the apex.
     let real = (zero.le(disc) | a.lt(zero)) & !constant;
+    let doubt = disc.abs().le(R::splat(DOUBT * R::UNIT_ROUNDOFF) * (sizes[0] * sizes[1])) & !constant;
+    let starts_here = matches!(own, Some(own) if own.any());
+    if !starts_here && !(real | doubt).any() {
+        // Most registers of a tile pass by most of its shapes: no root, no quotient.
+        let always_inside = constant & c.le(zero);
+        return Roots { lo: Crossing::never(-1.0), hi: Crossing::never(1.0), real, a, always_inside };
+    }
     let (x, y) = pair(a, b, c, disc);
     let (mut lo, mut hi) = (Crossing { tau: x, t: t0 + x }, Crossing { tau: y, t: t0 + y });
     let mut found = Roots { lo, hi, real, a, always_inside: constant & c.le(zero) };
@@ -99,7 +106,6 @@ pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadr
         hi.t = R::select(near_hi, y, hi.t);
         (found.lo, found.hi) = (lo, hi);
     }
-    let doubt = disc.abs().le(R::splat(DOUBT * R::UNIT_ROUNDOFF) * (sizes[0] * sizes[1])) & !constant;
     if doubt.any() {
         found = judged_again(ray, t0, form, doubt, found);
     }
@@ -129,7 +135,7 @@ fn judged_again<R: Real>(ray: &LocalRay<R>, t0: R, form: &impl Quadric, doubt: R
     let real = R::select(rough.real, one, zero);
     let rough_numbers = [rough.lo.tau, rough.lo.t, rough.hi.tau, rough.hi.t, real];
     let [lo_tau, lo_t, hi_tau, hi_t, real] = R::again(doubt, given, rough_numbers, |v| {
-        let (whole, nothing) = (|k: usize| three(|i| v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
+        let (whole, nothing) = (|k: usize| three!(i => v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
         let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
         let x = roots(&exact, exact.nearest(), form, None);
         let real = Real::select(x.real, Real::one(), Real::zero());

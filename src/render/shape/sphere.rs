@@ -34,9 +34,9 @@ pub(super) fn crossings<R: Real>(r: f64, ray: &LocalRay<R>, own: Option<Own<R>>,
 #[inline(always)]
 pub(super) fn point<R: Real>(r: f64, p: [R; 3]) -> Point<R> {
     let scale = R::one() / dot(p, p).sqrt();
-    let n = each3(p, |x| x * scale);
-    let p = each3(n, |x| x * R::splat(r));
+    let n = each3!(p, x => x * scale);
+    let p = each3!(n, x => x * R::splat(r));
     // dot 3, root 1, quotient 1, products 2, and one to spare
     let gamma = R::splat(8.0 * R::UNIT_ROUNDOFF);
-    Point { p, n, error: each3(p, |x| gamma * x.abs()) }
+    Point { p, n, error: each3!(p, x => gamma * x.abs()) }
 }

@@ -37,7 +37,11 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
     let leaves = own.map_or(zero, |own| R::select(own.here, R::select(own.outward, one, -one), zero));
     let LocalRay { o, o_lo: lo, d, d_lo: e } = *ray;
     let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], e[0], e[1], e[2], leaves];
-    let found = R::each(given, |v| ring_crossings(ring, v));
+    // In a function of its own: it is by far the largest kernel.
+    let found = R::vectorize(
+        #[inline(always)]
+        || R::each(given, |v| ring_crossings(ring, v)),
+    );
     for k in 0..4 {
         visit.crossing(found[k], R::splat(SIDE), !found[4 + k].same(zero));
     }
@@ -47,12 +51,12 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
 #[inline(always)]
 fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
     let to_unit = S::splat(ring.scale);
-    let at = |i: usize| three(|k| v[i + k] * to_unit);
+    let at = |i: usize| three!(k => v[i + k] * to_unit);
     let d = at(6);
     // The direction is brought to unit magnitude, too: its length is the world's, and its fourth power is needed.
     let longest = larger(d[0].magnitude(), larger(d[1].magnitude(), d[2].magnitude()));
     let k = S::splat(reciprocal_power(longest));
-    let ray = LocalRay { o: at(0), o_lo: at(3), d: each3(d, |x| x * k), d_lo: each3(at(9), |x| x * k) };
+    let ray = LocalRay { o: at(0), o_lo: at(3), d: each3!(d, x => x * k), d_lo: each3!(at(9), x => x * k) };
     if !v[12].same(S::zero()).any() {
         let mut found = numbers(roots_from(ring, &ray, v[12]), k);
         if v[12].lt(S::zero()).any() {
@@ -67,7 +71,7 @@ fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
     let LocalRay { o, o_lo: l, d, d_lo: e } = ray;
     let given = [o[0], o[1], o[2], l[0], l[1], l[2], d[0], d[1], d[2], e[0], e[1], e[2], k];
     S::again(doubt, given, numbers(found, k), |w| {
-        let (whole, nothing) = (|i: usize| three(|k| w[i + k] + w[i + 3 + k]), [Real::zero(); 3]);
+        let (whole, nothing) = (|i: usize| three!(k => w[i + k] + w[i + 3 + k]), [Real::zero(); 3]);
         let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
         numbers(ring_roots(ring, &exact).0, w[12])
     })
@@ -87,19 +91,19 @@ fn numbers<S: Single>(found: Found<S>, k: S) -> [S; 8] {
 #[inline(always)]
 pub(super) fn point<R: Real>(ring: &Ring, p: [R; 3]) -> Point<R> {
     let (to_unit, to_scene) = (R::splat(ring.scale), R::splat(1.0 / ring.scale));
-    let p = each3(p, |x| x * to_unit);
+    let p = each3!(p, x => x * to_unit);
     let rho = p[0].mul_add(p[0], p[2] * p[2]).sqrt();
     let s = R::splat(ring.r) / rho;
     let c = [p[0] * s, R::zero(), p[2] * s];
     let v = [p[0] - c[0], p[1], p[2] - c[2]];
     let scale = R::one() / dot(v, v).sqrt();
-    let n = each3(v, |x| x * scale);
+    let n = each3!(v, x => x * scale);
     let tube = R::splat(ring.tube);
-    let q = three(|i| tube.mul_add(n[i], c[i]));
+    let q = three!(i => tube.mul_add(n[i], c[i]));
     // By component, for both are stretched or shortened rather than turned: circle 5 of it, tube 8, their sum 1.
     let (u6, u9) = (R::splat(6.0 * R::UNIT_ROUNDOFF), R::splat(9.0 * R::UNIT_ROUNDOFF));
-    let error = three(|i| (u6 * c[i].abs() + u9 * (tube * n[i]).abs()) * to_scene);
-    Point { p: each3(q, |x| x * to_scene), n, error }
+    let error = three!(i => (u6 * c[i].abs() + u9 * (tube * n[i]).abs()) * to_scene);
+    Point { p: each3!(q, x => x * to_scene), n, error }
 }
 
 /// Roots, and 1 for each that there is.
@@ -301,7 +305,7 @@ fn polish<S: Single>(ring: &Ring, from: [S; 3], d: [S; 3], start: S, level: S) -
 /// |(√(x² + z²) − R, y)| − r at from + τ·d, and its derivative by τ.
 #[inline(always)]
 fn distance<S: Real>(ring: &Ring, from: [S; 3], d: [S; 3], tau: S) -> (S, S) {
-    let p = three(|i| tau.mul_add(d[i], from[i]));
+    let p = three!(i => tau.mul_add(d[i], from[i]));
     let rho = p[0].mul_add(p[0], p[2] * p[2]).sqrt();
     let w = rho - S::splat(ring.r);
     let to_circle = w.mul_add(w, p[1] * p[1]).sqrt();

@@ -28,6 +28,20 @@ struct Edges<R: Real> {
     hit: R::Mask,
 }
 
+/// The axes renamed so that the ray's main one is z.
+#[inline(always)]
+fn turned<R: Real>(z_most: R::Mask, x_most: R::Mask, v: [R; 3]) -> [R; 3] {
+    three!(i => R::select(z_most, v[i], R::select(x_most, v[(i + 1) % 3], v[(i + 2) % 3])))
+}
+
+/// Whether a ray through the edge from `p` to `q` counts as one through this triangle.
+#[inline(always)]
+fn is_ours<R: Real>(clockwise: R::Mask, p: (R, R), q: (R, R)) -> R::Mask {
+    let (up, down) = (p.1.lt(q.1), q.1.lt(p.1));
+    let (left, right) = (p.1.same(q.1) & q.0.lt(p.0), p.1.same(q.1) & p.0.lt(q.0));
+    (clockwise & (down | right)) | (!clockwise & (up | left))
+}
+
 #[inline(always)]
 fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let zero = R::zero();
@@ -35,15 +49,11 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let (ax, ay, az) = (d[0].abs(), d[1].abs(), d[2].abs());
     let z_most = ax.le(az) & ay.le(az);
     let x_most = !z_most & ay.le(ax);
-    let turn =
-        |v: [R; 3]| -> [R; 3] { three(|i| R::select(z_most, v[i], R::select(x_most, v[(i + 1) % 3], v[(i + 2) % 3]))) };
-    let d = turn(d);
+    let d = turned::<R>(z_most, x_most, d);
     let sz = R::one() / d[2];
     let (sx, sy) = (d[0] * sz, d[1] * sz);
-    let corner = |i: usize| turn(minus(splat3(tri.v[i]), o));
-    let (a, b, c) = (corner(0), corner(1), corner(2));
-    let shear = |v: [R; 3]| ((-sx).mul_add(v[2], v[0]), (-sy).mul_add(v[2], v[1]));
-    let ((ax, ay), (bx, by), (cx, cy)) = (shear(a), shear(b), shear(c));
+    let [a, b, c] = each3!(tri.v, v => turned::<R>(z_most, x_most, minus(splat3(v), o)));
+    let [(ax, ay), (bx, by), (cx, cy)] = each3!([a, b, c], v => ((-sx).mul_add(v[2], v[0]), (-sy).mul_add(v[2], v[1])));
     let e = [
         cx.difference_of_products(by, cy, bx),
         ax.difference_of_products(cy, ay, cx),
@@ -53,22 +63,18 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let positive = zero.lt(e[0]) | zero.lt(e[1]) | zero.lt(e[2]);
     let det = e[0] + e[1] + e[2];
     let mut hit = !(negative & positive) & !det.same(zero);
-    let on_edge = each3(e, |x| x.same(zero));
+    let on_edge = each3!(e, x => x.same(zero));
     if (hit & (on_edge[0] | on_edge[1] | on_edge[2])).any() {
         // As if the ray passed a little to the left and, less still, above: so of triangles that share the edge or corner,
         // exactly one is met.
         let clockwise = zero.lt(det);
-        let ours = |(px, py): (R, R), (qx, qy): (R, R)| {
-            let (up, down) = (py.lt(qy), qy.lt(py));
-            let (left, right) = (py.same(qy) & qx.lt(px), py.same(qy) & px.lt(qx));
-            (clockwise & (down | right)) | (!clockwise & (up | left))
-        };
         let (a, b, c) = ((ax, ay), (bx, by), (cx, cy));
-        hit = hit & (!on_edge[0] | ours(b, c)) & (!on_edge[1] | ours(c, a)) & (!on_edge[2] | ours(a, b));
+        let ours = each3!([(b, c), (c, a), (a, b)], (p, q) => is_ours::<R>(clockwise, p, q));
+        hit = hit & (!on_edge[0] | ours[0]) & (!on_edge[1] | ours[1]) & (!on_edge[2] | ours[2]);
     }
     // Weights before the sum: products of an edge's determinant with a length would leave the range that squares allow.
     let inverse = R::one() / det;
-    let w = each3(e, |x| x * inverse);
+    let w = each3!(e, x => x * inverse);
     let t = w[0].mul_add(a[2], w[1].mul_add(b[2], w[2] * c[2])) * sz;
     Edges { e, det, t, hit }
 }
@@ -99,7 +105,7 @@ pub(super) fn crossing<R: Real>(
 pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point<R>, [R; 3]) {
     let x = edges(tri, o, d);
     let (beta, gamma) = (x.e[1] / x.det, x.e[2] / x.det);
-    let v: [[R; 3]; 3] = each3(tri.v, splat3);
+    let v: [[R; 3]; 3] = each3!(tri.v, v => splat3(v));
     // From the first corner along the edges: a coordinate that all corners share is then met exactly.
     let (along, across) = (minus(v[1], v[0]), minus(v[2], v[0]));
     let p = axpy(gamma, across, axpy(beta, along, v[0]));
@@ -108,7 +114,7 @@ pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point
     // corners' distances, with another six roundings of those.
     let (u5, u6) = (R::splat(5.0 * R::UNIT_ROUNDOFF), R::splat(6.0 * R::UNIT_ROUNDOFF));
     let (b, c) = (beta.abs(), gamma.abs());
-    let error = three(|i| {
+    let error = three!(i => {
         let (e1, e2) = (along[i].abs(), across[i].abs());
         u5 * b.mul_add(e1, c.mul_add(e2, v[0][i].abs())) + u6 * (e1 + e2)
     });
@@ -119,7 +125,7 @@ pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point
 #[inline(always)]
 pub(super) fn shading_normal<R: Real>(tri: &TriangleData, local: [R; 3], n: [R; 3]) -> [R; 3] {
     let Some(shading) = tri.shading else { return n };
-    let s: [[R; 3]; 3] = each3(shading, splat3);
+    let s: [[R; 3]; 3] = each3!(shading, n => splat3(n));
     let (b, c) = (local[0], local[2]);
     let a = R::one() - b - c;
     let m = axpy(c, s[2], axpy(b, s[1], scaled(a, s[0])));

@@ -61,7 +61,7 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let within = t_axis.min(t_bottom.max(t_top)).max(t_bottom.min(t_top));
     let t0 = R::select(level, t_axis, within);
     let from = ray.moved(t0);
-    let x = roots(ray, (t0, each3(from, |m| m.0)), tube, on_side(&own, SIDE));
+    let x = roots(ray, (t0, each3!(from, m => m.0)), tube, on_side(&own, SIDE));
     let (m, m_lo) = from[1];
     let at_bottom = Crossing { tau: ((bottom - m) - m_lo) / dy, t: t_bottom };
     let at_top = Crossing { tau: ((top - m) - m_lo) / dy, t: t_top };
@@ -119,7 +119,7 @@ pub(super) fn point<R: Real>(tube: &Tube, p: [R; 3], part: R) -> Point<R> {
 
     let pick = |side: R, apex: R, cap: R| R::select(on_side, R::select(at_axis, apex, side), cap);
     let q = [R::select(on_side, ex * w, p[0]), R::select(on_side, p[1], cap_y), R::select(on_side, ez * w, p[2])];
-    let n = three(|i| pick(side_n[i], apex_n[i], cap_n[i]));
+    let n = three!(i => pick(side_n[i], apex_n[i], cap_n[i]));
     // Radius 2, of the sum's larger part; dot and root 3, quotient 1, products 2, and one to spare. A cap's height is exact.
     let gamma = R::splat(9.0 * R::UNIT_ROUNDOFF);
     let reach = gamma * (R::splat(tube.radius) + (slope * p[1]).abs());

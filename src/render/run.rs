@@ -1,0 +1,134 @@
+//! Sorts a batch by what its rays met, without moving it: rays are taken by the register, with a mask of those concerned.
+//!
+//! Neighbouring rays mostly meet the same thing, so most registers belong to one run. Where a run is sparse, as behind a mirror
+//! ball, it is packed first.
+
+use super::batch::NONE;
+use super::world::World;
+use crate::math::real::Mask;
+use crate::math::{Elem, Lane};
+
+/// Neighbouring rays that fill one register, and which of them are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LaneGroup {
+    /// The first ray.
+    pub first: u32,
+    /// One bit a ray.
+    pub bits: u32,
+}
+
+/// All rays of a batch whose hits are shaded together.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// What they met, by [`World::flock`].
+    pub flock: u32,
+    /// Where they are, in ascending order.
+    pub groups: Vec<LaneGroup>,
+    /// How many they are.
+    pub count: usize,
+}
+
+impl Run {
+    /// Adds rays; those of one register in one go after another.
+    #[inline(always)]
+    fn add(&mut self, first: usize, bits: u32) {
+        self.count += bits.count_ones() as usize;
+        let first = first as u32;
+        match self.groups.last_mut() {
+            Some(last) if last.first == first => last.bits |= bits,
+            _ => self.groups.push(LaneGroup { first, bits }),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.groups.clear();
+        self.count = 0;
+    }
+
+    /// Whether most places of its registers are empty, so that packing pays.
+    pub fn is_sparse(&self, width: usize) -> bool {
+        self.groups.len() > 1 && 2 * self.count < self.groups.len() * width
+    }
+
+    /// `count` rays from the first on.
+    pub fn whole(&mut self, count: usize, width: usize) {
+        self.clear();
+        for first in (0..count).step_by(width) {
+            self.add(first, lanes_below(count - first, width));
+        }
+    }
+}
+
+/// The bits of the first `n` places of a register.
+#[inline(always)]
+fn lanes_below(n: usize, width: usize) -> u32 {
+    if n >= 32 { u32::MAX >> (32 - width) } else { ((1u32 << n) - 1) & (u32::MAX >> (32 - width)) }
+}
+
+/// A batch, sorted.
+#[derive(Debug, Default)]
+pub struct Runs {
+    /// Rays that met nothing.
+    pub missed: Run,
+    runs: Vec<Run>,
+    used: usize,
+    /// The run of each flock; only true where that run says so too.
+    run_of: Vec<u32>,
+}
+
+impl Runs {
+    /// For batches of rays through a world of `primitives`.
+    pub fn new(primitives: usize) -> Runs {
+        Runs { run_of: vec![0; primitives], ..Runs::default() }
+    }
+
+    /// Those that met something.
+    pub fn met(&self) -> &[Run] {
+        &self.runs[..self.used]
+    }
+
+    /// Sorts the first `n` rays by what they met.
+    #[inline(always)]
+    pub fn sort<L: Lane>(&mut self, world: &World, ids: &[L::Elem], n: usize) {
+        self.missed.clear();
+        self.used = 0;
+        let none = L::splat(NONE);
+        for first in (0..n).step_by(L::WIDTH) {
+            let id = L::load(&ids[first..]);
+            let all = lanes_below(n - first, L::WIDTH);
+            let missed = id.same(none).bits() & all;
+            if missed != 0 {
+                self.missed.add(first, missed);
+            }
+            let mut rest = all & !missed;
+            while rest != 0 {
+                let one = ids[first + rest.trailing_zeros() as usize];
+                let here = id.same(L::splat(one.to_f64())).bits() & rest;
+                self.run_of(world.flock(one.to_f64() as u32)).add(first, here);
+                rest &= !here;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn run_of(&mut self, flock: u32) -> &mut Run {
+        let known = self.run_of[flock as usize] as usize;
+        if known < self.used && self.runs[known].flock == flock {
+            return &mut self.runs[known];
+        }
+        self.new_run(flock)
+    }
+
+    #[inline(never)]
+    fn new_run(&mut self, flock: u32) -> &mut Run {
+        if self.used == self.runs.len() {
+            self.runs.push(Run::default()); // once for the most that a batch has had
+        }
+        self.run_of[flock as usize] = self.used as u32;
+        self.used += 1;
+        let run = &mut self.runs[self.used - 1];
+        run.clear();
+        run.flock = flock;
+        run
+    }
+}
