@@ -115,8 +115,16 @@ impl Work<'_> {
         let on = Build::of(self.options.instructions);
         // The one place that chooses lanes: only what the processor was found to have.
         let run = || match (on, self.options.precision) {
+            (Build::Common, Precision::F64) => self.trace::<f64>(film, footprints),
+            (Build::Common, Precision::F32) => self.trace::<f32>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx2, Precision::F64) => self.trace::<lane::F64x4>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx2, Precision::F32) => self.trace::<lane::F32x8>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
             (Build::Avx512, Precision::F64) => self.trace::<lane::F64x8>(film, footprints),
-            _ => self.trace::<f64>(film, footprints),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx512, Precision::F32) => self.trace::<lane::F32x16>(film, footprints),
         };
         // Patterns may nest deep, and each level takes a frame of the stack.
         let threads = self.options.threads.unwrap_or(0);

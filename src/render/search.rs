@@ -1,6 +1,6 @@
 //! Whether the tree finds what testing every surface finds: the same t, to the bit, and the same surface.
 
-use super::batch::{HitColumns, NONE, RayBatch};
+use super::batch::{HitColumns, MOST, NONE, RayBatch};
 use super::bounds::{Bounds, larger};
 use super::candidates::Candidates;
 use super::frame::Axes;
@@ -33,9 +33,9 @@ impl Search {
         // Their own, for the tree's are a little wider: a ray is to run along the very face.
         let boxes: Vec<Bounds> = world.bvh.leaves().map(|(id, b)| box_of(world, id).unwrap_or(b)).collect();
         let mut search = Search::default();
-        let (mut batch, mut found) = (RayBatch::<f64>::new(ROOM), [HitColumns::new(ROOM), HitColumns::new(ROOM)]);
+        let (mut batch, mut found) = (RayBatch::<f64>::default(), [HitColumns::default(), HitColumns::default()]);
         while search.rays < rays {
-            batch.len = (rays - search.rays).min(ROOM as u64) as usize;
+            batch.len = (rays - search.rays).min(MOST as u64) as usize;
             for i in 0..batch.len {
                 let (o, d) = ray(&boxes, KeyedHash::new().with(lot).with(search.rays + i as u64));
                 for c in 0..3 {
@@ -62,9 +62,6 @@ impl Search {
 
 /// Rays run along an axis plane, or at a larger angle than this to it: 2^-40, thousands of roundings.
 const LEAST_ANGLE: f64 = 1.0 / (1u64 << 40) as f64;
-
-/// Rays at a time.
-const ROOM: usize = 256;
 
 /// Origin and direction.
 fn ray(boxes: &[Bounds], key: KeyedHash) -> ([f64; 3], [f64; 3]) {

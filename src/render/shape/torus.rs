@@ -37,14 +37,25 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
     let leaves = own.map_or(zero, |own| R::select(own.here, R::select(own.outward, one, -one), zero));
     let LocalRay { o, o_lo: lo, d, d_lo: e } = *ray;
     let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], e[0], e[1], e[2], leaves];
-    // In a function of its own: it is by far the largest kernel.
-    let found = R::vectorize(
-        #[inline(always)]
-        || R::each(given, |v| ring_crossings(ring, v)),
-    );
+    let found = in_one_function(ring, &given);
     for k in 0..4 {
         visit.crossing(found[k], R::splat(SIDE), !found[4 + k].same(zero));
     }
+}
+
+/// [`ring_crossings`] of each lane, in one function for all callers: it is by far the largest kernel.
+#[inline(always)]
+fn in_one_function<R: Real>(ring: &Ring, given: &[R; 13]) -> [R; 8] {
+    R::vectorize(
+        #[inline(always)]
+        || {
+            R::each(
+                *given,
+                #[inline(always)]
+                |v| ring_crossings(ring, v),
+            )
+        },
+    )
 }
 
 /// Four t and, for each, 1 where the line meets the ring there, else 0.
