@@ -139,11 +139,17 @@ impl Scene {
         let (mut best, mut id) = (ray.t_max, u32::MAX);
         let tables = Tables { maps: &[], triangles: &self.triangles };
         tree.traverse(ray.o, ray.d, best, |k| {
-            self.primitives[k as usize].crossings::<f64, false>(tables, ray.o, ray.d, None, &mut |t: f64, _: f64, ok: Bool| {
-                if ok.0 && 0.0 < t && (t < best || (t == best && k < id)) {
-                    (best, id) = (t, k);
-                }
-            });
+            self.primitives[k as usize].crossings::<f64, false>(
+                tables,
+                ray.o,
+                ray.d,
+                None,
+                &mut |t: f64, _: f64, ok: Bool| {
+                    if ok.0 && 0.0 < t && (t < best || (t == best && k < id)) {
+                        (best, id) = (t, k);
+                    }
+                },
+            );
             best
         });
         (best, id)
@@ -205,7 +211,10 @@ fn timed<T>(rounds: usize, mut f: impl FnMut() -> T) -> (f64, T) {
 fn rate(what: &str, rays: &[Ray], f: impl Fn(&[Ray]) -> usize) {
     let (seconds, hits) = timed(ROUNDS, || f(rays));
     let (rate, per) = (rays.len() as f64 / seconds / 1e6, seconds / rays.len() as f64 * 1e9);
-    println!("  {what:<32} {rate:7.2} M rays/s ({per:.0} ns a ray, hits {:.1} %)", 100.0 * hits as f64 / rays.len() as f64);
+    println!(
+        "  {what:<32} {rate:7.2} M rays/s ({per:.0} ns a ray, hits {:.1} %)",
+        100.0 * hits as f64 / rays.len() as f64
+    );
 }
 
 fn build(what: &str, boxes: &[(u32, Bounds)], most: usize) -> Bvh {
@@ -238,7 +247,8 @@ fn mesh() {
             t_max: f64::INFINITY,
         })
         .collect();
-    for most in std::env::var("MOST").unwrap_or("4,8".into()).split(',').map(|x| x.parse::<usize>().expect("a number")) {
+    for most in std::env::var("MOST").unwrap_or("4,8".into()).split(',').map(|x| x.parse::<usize>().expect("a number"))
+    {
         let tree = build(&format!("mesh of {} triangles, {most} a leaf", mesh.faces.len()), &scene.boxes, most);
         let (mut hitting, mut shadow) = (Vec::new(), Vec::new());
         for tile in all.chunks(16) {

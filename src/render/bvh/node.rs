@@ -129,7 +129,10 @@ impl Node {
 
     /// Adds to the numbers of the children that are nodes, and to the places of those that are leaves.
     pub fn renumber(&mut self, nodes: usize, leaves: usize) {
-        for slot in (0..WIDE).filter(|&slot| self.is_used(slot)) {
+        for slot in 0..WIDE {
+            if !self.is_used(slot) {
+                continue;
+            }
             let child = self.child(slot);
             let moved = match child.is_leaf() {
                 true => Child::leaf(child.range().start + leaves, child.range().len()),
@@ -208,7 +211,8 @@ impl Fit {
         if !(away < f64::MAX && half < f64::MAX) {
             return Fit::default();
         }
-        let (origin, reach) = if away > FAR * half { (c, half) } else { ([0.0; 3], larger(most(bounds.lo), most(bounds.hi))) };
+        let (origin, reach) =
+            if away > FAR * half { (c, half) } else { ([0.0; 3], larger(most(bounds.lo), most(bounds.hi))) };
         Fit { origin, scale: 1.0 / power_below(reach) }
     }
 

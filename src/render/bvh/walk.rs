@@ -119,7 +119,8 @@ impl Spread {
     /// Whether the rays run so much alike that a box which the beam meets is met by most of them.
     #[inline(always)]
     pub fn is_narrow(&self) -> bool {
-        let alike = |[least, most]: [f64; 2]| (least >= 0.0 && most <= 2.0 * least) || (most <= 0.0 && least >= 2.0 * most);
+        let alike =
+            |[least, most]: [f64; 2]| (least >= 0.0 && most <= 2.0 * least) || (most <= 0.0 && least >= 2.0 * most);
         alike(self.d[0]) && alike(self.d[1]) && alike(self.d[2])
     }
 }
