@@ -191,6 +191,8 @@ pub trait Single: Real<Single = Self> {
 pub trait Lane: Real<Single = f64> {
     /// The stored form.
     type Elem: Elem;
+    /// A register of up to eight `f32` of the same instructions: eight boxes of a tree are tested in it.
+    type Boxes: Lane<Elem = f32>;
     /// How many values one `Lane` holds.
     const WIDTH: usize;
 

@@ -142,6 +142,7 @@ macro_rules! register {
 
         impl Lane for $name {
             type Elem = $elem;
+            type Boxes = super::F32x8;
             const WIDTH: usize = $width;
             #[inline(always)]
             fn load(src: &[$elem]) -> Self {
