@@ -214,6 +214,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
             false => d.note("the scene has no shapes: add one, such as `sphere()`"),
         });
     }
+    scene.prune();
     let evaluate_seconds = start.elapsed().as_secs_f64();
     Ok(Evaluated { scene, sources, params, warnings, is_library, files, parse_seconds, evaluate_seconds })
 }
