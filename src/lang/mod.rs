@@ -205,7 +205,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
         return Err(Failure { diagnostics: in_order(errors, limits.errors), sources, files, main_unreadable: false });
     }
     let mut warnings = Vec::new();
-    let is_empty = scene.instance_count() == 0;
+    let is_empty = scene.is_empty();
     let is_library = is_empty && exports;
     if is_empty {
         let d = Diagnostic::warning("there is nothing to show").at(Span::new(main, 0..0), "");
