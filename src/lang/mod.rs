@@ -22,6 +22,7 @@ mod load;
 mod machine;
 mod measure;
 mod memory;
+mod mesh;
 mod ops;
 mod param;
 mod parse;
@@ -188,10 +189,10 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
             break;
         }
     }
-    let Machine { build: Build { mut scene, pictures, .. }, params, errors: failed, .. } = machine;
+    let Machine { build: Build { mut scene, pictures, mesh_files, .. }, params, errors: failed, .. } = machine;
     errors.extend(failed);
     if errors.is_empty() {
-        errors = finish::finish(&mut scene, &pictures, &mut loader);
+        errors = finish::finish(&mut scene, (&pictures, &mesh_files), &mut loader);
     }
     let exports = resolver.exports.last().is_some_and(|e| !e.names.is_empty());
     let Loader { sources, files, .. } = loader;

@@ -123,7 +123,7 @@ impl Work<'_> {
         footprints: Option<&mut [Footprint]>,
     ) -> Option<(RayCounts, usize)> {
         let record = footprints.is_some();
-        let recorder = || if record { Recorder::new(self.world.primitives.len()) } else { Recorder::off() };
+        let recorder = || if record { Recorder::new(self.world) } else { Recorder::off() };
         let worker = || TileWorker::<L>::new(self.world, self.options, self.cancel, recorder());
         let jobs = self.jobs(film, footprints);
         let work = |worker: &mut TileWorker<'_, L>, mut job: Job<'_>| {

@@ -5,7 +5,7 @@ use super::bounds::{Bounds, larger};
 use super::shape::{Kind, Ring, Tube};
 use crate::math::affine::reciprocal_power;
 use crate::math::{Affine, Dd};
-use crate::scene::Shape;
+use crate::scene::{MeshId, Shape};
 use glam::DVec3;
 
 /// A shape in its frame, before it has a number.
@@ -28,6 +28,8 @@ pub enum Form {
     Framed(Kind),
     /// Corners in the world, normal and shading normals there.
     Triangle([[f64; 3]; 3], [f64; 3], Option<[[f64; 3]; 3]>),
+    /// The triangles of a file, which stand in the frame as they were made, and whether they look smooth.
+    Mesh(MeshId, bool),
 }
 
 /// Leads from lengths of a scaled frame back to those in which the shape was made. Faces keep their exact coordinates there: a
@@ -66,7 +68,7 @@ impl Placed {
         let faces = match (&self.rescale, &self.form) {
             (Some(rescale), _) => rescale.faces,
             (None, Form::Framed(kind)) => Rescale::new(1.0, kind).faces,
-            (None, Form::Triangle(..)) => [[(f64::NAN, f64::NAN); 2]; 3],
+            (None, Form::Triangle(..) | Form::Mesh(..)) => [[(f64::NAN, f64::NAN); 2]; 3],
         };
         faces.map(|across| across.map(|(_, made)| made))
     }
@@ -119,6 +121,13 @@ pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
                 })
                 .collect()
         }
+        Shape::Mesh { mesh, smooth } => vec![Placed {
+            form: Form::Mesh(*mesh, *smooth),
+            world_from_local: *world_from_object,
+            made_from_local: Affine::IDENTITY,
+            rescale: None,
+            extent: None,
+        }],
     }
 }
 
@@ -183,7 +192,7 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
         Kind::Cuboid(half) => Kind::Cuboid(grow(half)),
         Kind::Tube(t) => Kind::Tube(Tube { radius: t.radius * s, bottom: t.bottom * s, top: t.top * s, ..t }),
         Kind::Ring(ring) => Kind::Ring(Ring::new(ring.r / ring.scale * s, ring.tube / ring.scale * s)),
-        Kind::Triangle(_) => kind,
+        Kind::Triangle(_) | Kind::Mesh(_) => kind,
     };
     Placed {
         form: Form::Framed(kind),
@@ -197,25 +206,40 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
 fn triangle(points: [DVec3; 3], normals: Option<[DVec3; 3]>, world: &Affine) -> Placed {
     let v = points.map(|p| world.apply(p).to_array());
     let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
-    let back = world.inverse().unwrap_or(Affine::IDENTITY).linear_f64();
-    // Normals go by the inverse transposed, so a mirrored shape keeps its outside.
-    let to_world = |n: DVec3| {
-        let n = unit(n).to_array();
-        unit(DVec3::from_array(std::array::from_fn(|c| (0..3).map(|r| back[r][c] * n[r]).sum()))).to_array()
-    };
+    let map = normals_map(world);
+    let to_world = |n: DVec3| normal_to_world(&map, n);
     let mut made = Affine::translation(points[0]);
     for (r, (x, y)) in e1.to_array().into_iter().zip(e2.to_array()).enumerate() {
         made.linear[r] = [Dd::new(x), Dd::new(0.0), Dd::new(y)];
     }
-    let scale = larger(largest(e1), largest(e2));
-    let n = (e1 / scale).cross(e2 / scale);
     Placed {
-        form: Form::Triangle(v, to_world(n), normals.map(|ns| ns.map(to_world))),
+        form: Form::Triangle(v, to_world(face_normal(points)), normals.map(|ns| ns.map(to_world))),
         world_from_local: Affine::IDENTITY,
         made_from_local: made,
         rescale: None,
         extent: None,
     }
+}
+
+/// A direction straight out of a triangle, on the side from which its corners go round counter-clockwise.
+pub fn face_normal(points: [DVec3; 3]) -> DVec3 {
+    let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
+    let scale = larger(largest(e1), largest(e2));
+    (e1 / scale).cross(e2 / scale)
+}
+
+/// What takes normals to the world, but for their length: they go by the inverse transposed, so a mirrored shape keeps its
+/// outside.
+pub fn normals_map(world: &Affine) -> [[f64; 3]; 3] {
+    let back = world.inverse().unwrap_or(Affine::IDENTITY).linear_f64();
+    std::array::from_fn(|r| std::array::from_fn(|c| back[c][r]))
+}
+
+/// The direction `n`, of any length but 0, by a map for normals; of unit length.
+#[inline]
+pub fn normal_to_world(map: &[[f64; 3]; 3], n: DVec3) -> [f64; 3] {
+    let n = unit(n).to_array();
+    unit(DVec3::from_array(map.map(|row| (0..3).map(|i| row[i] * n[i]).sum()))).to_array()
 }
 
 /// The box of a framed shape's extent in the world.

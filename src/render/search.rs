@@ -27,7 +27,7 @@ impl Search {
     pub fn through(world: &World, rays: u64, lot: u64) -> Search {
         let planes: Vec<u32> = world.unbounded.iter().map(|p| p.id).collect();
         let by_tree = Candidates { ids: planes, tree: true };
-        let by_list = Candidates { ids: (0..world.primitives.len() as u32).collect(), tree: false };
+        let by_list = Candidates { ids: (0..world.surface_count()).collect(), tree: false };
         let mut search = Search::default();
         let (mut batch, mut found) = (RayBatch::<f64>::new(ROOM), [HitColumns::new(ROOM), HitColumns::new(ROOM)]);
         while search.rays < rays {

@@ -7,7 +7,7 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
-use super::census::{PrimitiveKey, same_geometry};
+use super::census::{PrimitiveKey, same_geometry, surfaces_renumbered};
 use super::digest::{LengthKey, MaterialDigest, material_digests};
 use super::frame::Frame;
 use super::material::{MaterialCompiler, Slot, Surfacing};
@@ -15,14 +15,15 @@ use super::pattern::PatternTable;
 use super::place::{Form, Placed, Rescale, place, world_bounds};
 use super::ray::Own;
 use super::shape::primitive::Tables;
-use super::shape::{Kind, Primitive, Surface, TriangleData, Visit};
-use super::touch::{lies_on, neighbourhood};
+use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
+use super::touch::{lies_on, lies_on_triangle, neighbourhood};
 use crate::math::real::three;
 use crate::math::{Affine, Dd, Real};
 use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -33,6 +34,8 @@ pub struct World {
     pub(super) origins: Vec<(NodeId, MaterialId)>,
     pub(super) maps: Vec<LinearMap>,
     pub(super) triangles: Vec<TriangleData>,
+    pub(super) meshes: Vec<Mesh>,
+    pub(super) owners: Owners,
     pub(super) spaces: Vec<MadeSpace>,
     pub(super) unbounded: Vec<Unbounded>,
     pub(super) bvh: Bvh,
@@ -44,6 +47,29 @@ pub struct World {
     pub(super) eye: [f64; 3],
     pub(super) background: [f64; 3],
     pub(super) ambient: [f64; 3],
+}
+
+/// Which primitive a surface belongs to: with numbers beyond those of primitives, triangles belong to their mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Owners {
+    /// How many primitives there are.
+    pub(super) primitives: u32,
+    /// The first triangle of each mesh, ascending, and the primitive that it is.
+    pub(super) meshes: Vec<(u32, u32)>,
+}
+
+impl Owners {
+    /// The primitive that surface `id` belongs to.
+    #[inline(always)]
+    pub fn of(&self, id: u32) -> u32 {
+        if id < self.primitives || self.meshes.is_empty() { id } else { self.meshes[self.mesh(id)].1 }
+    }
+
+    /// The number of the mesh that surface `id`, a triangle, belongs to.
+    #[inline]
+    fn mesh(&self, id: u32) -> usize {
+        self.meshes.partition_point(|m| m.0 <= id).saturating_sub(1)
+    }
 }
 
 /// The way from a primitive's frame to the space in which its shape was made.
@@ -141,6 +167,8 @@ impl World {
             origins: Vec::new(),
             maps: Vec::new(),
             triangles: Vec::new(),
+            meshes: Vec::new(),
+            owners: Owners::default(),
             spaces: Vec::new(),
             unbounded: Vec::new(),
             bvh: Bvh::default(),
@@ -162,11 +190,11 @@ impl World {
             }
             let world_from_object = instance.world_from_object;
             for placed in place(shape, &world_from_object) {
-                let (centre, half_height) = middle(shape);
+                let (centre, half_height) = middle(shape, scene);
                 let made = Made { world_from_object, centre, half_height };
                 let material = instance.material.0 as usize;
                 let surfacing = &world.materials[numbers[material] as usize];
-                let key = PrimitiveKey::new(&placed, &made, digests[material], surfacing);
+                let key = PrimitiveKey::new(&placed, &made, (digests[material], surfacing), &scene.meshes);
                 entries.push(Entry { key, placed, instance: instance.clone(), made });
             }
         }
@@ -175,16 +203,17 @@ impl World {
         order.sort_unstable();
         let keys: Vec<PrimitiveKey> = order.iter().map(|o| o.0).collect();
         let mut bounded = Vec::with_capacity(entries.len());
-        for (_, i) in order {
+        for &(_, i) in &order {
             world.add(&entries[i as usize], &numbers, &mut bounded);
             if go_on().is_break() {
                 return None;
             }
         }
+        world.add_meshes(scene, order.iter().map(|(_, i)| &entries[*i as usize]), &mut bounded);
         // Boxes are relative to the camera's place.
         let before = before.filter(|(old, _)| old.eye == world.eye);
         world.bvh =
-            before.and_then(|b| grafted(b, &keys, &bounded)).unwrap_or_else(|| Bvh::build_unless(bounded, cancel));
+            before.and_then(|b| grafted(b, (&world, &keys), &bounded)).unwrap_or_else(|| Bvh::build_unless(bounded, cancel));
         if go_on().is_break() {
             return None;
         }
@@ -245,6 +274,10 @@ impl World {
                 bounded.push((id, Bounds::of_points(v)));
                 Kind::Triangle(self.triangles.len() as u32 - 1)
             }
+            Form::Mesh(..) => {
+                self.owners.meshes.push((0, id));
+                Kind::Mesh(self.owners.meshes.len() as u32 - 1)
+            }
         };
         match placed.extent {
             Some(extent) => bounded.push((id, world_bounds(extent, &placed.world_from_local))),
@@ -259,6 +292,28 @@ impl World {
         self.origins.push((instance.node, instance.material));
     }
 
+    /// Adds the triangles of the meshes among the primitives, which are `entries`, with numbers after all of those.
+    fn add_meshes<'e>(
+        &mut self,
+        scene: &Scene,
+        entries: impl Iterator<Item = &'e Entry>,
+        bounded: &mut Vec<(u32, Bounds)>,
+    ) {
+        self.owners.primitives = self.primitives.len() as u32;
+        let mut first = self.owners.primitives;
+        for (entry, owner) in entries.zip(0..) {
+            let Form::Mesh(id, smooth) = entry.placed.form else { continue };
+            let mesh = Mesh::new(&scene.mesh(id).data, smooth, &entry.placed.world_from_local, (first, owner));
+            self.owners.meshes[self.meshes.len()] = (first, owner);
+            let triangles = 0..mesh.len() as u32;
+            bounded.par_extend(
+                triangles.into_par_iter().map(|k| (first + k, Bounds::of_points(mesh.corners(k)))),
+            );
+            first += mesh.len() as u32;
+            self.meshes.push(mesh);
+        }
+    }
+
     fn find_touched_surfaces(&mut self) {
         let mut lights = std::mem::take(&mut self.lights);
         for light in &mut lights {
@@ -271,13 +326,25 @@ impl World {
                     true
                 },
             );
-            near.retain(|&id| lies_on(&self.primitives[id as usize], self.tables(), light.at));
+            near.retain(|&id| match self.primitives.get(id as usize) {
+                Some(primitive) => lies_on(primitive, self.tables(), light.at),
+                None => {
+                    let (mesh, k) = self.triangle(id);
+                    lies_on_triangle(mesh.corners(k), mesh.normal(k), light.at)
+                }
+            });
             light.touched = near.into();
         }
         self.lights = lights;
     }
 
-    /// All surfaces, by number.
+    /// How many surfaces there are: primitives by number, then the triangles of meshes. A mesh itself is a primitive that no
+    /// ray meets.
+    pub fn surface_count(&self) -> u32 {
+        self.meshes.last().map_or(self.owners.primitives, |m| m.first + m.len() as u32)
+    }
+
+    /// All primitives, by number.
     pub fn primitives(&self) -> &[Primitive] {
         &self.primitives
     }
@@ -296,7 +363,19 @@ impl World {
     /// The primitive that surface `id` belongs to.
     #[inline(always)]
     pub(super) fn primitive(&self, id: u32) -> &Primitive {
-        &self.primitives[id as usize]
+        &self.primitives[self.owners.of(id) as usize]
+    }
+
+    /// Node and material of surface `id` in the scene.
+    pub(super) fn origin(&self, id: u32) -> (NodeId, MaterialId) {
+        self.origins[self.owners.of(id) as usize]
+    }
+
+    /// The mesh that surface `id` is a triangle of, and which. A number beyond all primitives is that of a triangle.
+    #[inline]
+    pub(super) fn triangle(&self, id: u32) -> (&Mesh, u32) {
+        let mesh = &self.meshes[self.owners.mesh(id)];
+        (mesh, id - mesh.first)
     }
 
     /// Calls `visit` for every crossing of lines with surface `id`; see [`Primitive::crossings`].
@@ -308,7 +387,11 @@ impl World {
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
-        self.primitive(id).crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+        if let Some(primitive) = self.primitives.get(id as usize) {
+            return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+        }
+        let (mesh, k) = self.triangle(id);
+        mesh.crossing(k, (o, d), own, visit);
     }
 
     /// Surface `id` where rays are at `t`, on `part`.
@@ -319,7 +402,11 @@ impl World {
         (o, d): ([R; 3], [R; 3]),
         (t, part): (R, R),
     ) -> Surface<R> {
-        self.primitive(id).surface::<R, AT_EYE>(self.tables(), o, d, t, part)
+        if let Some(primitive) = self.primitives.get(id as usize) {
+            return primitive.surface::<R, AT_EYE>(self.tables(), o, d, t, part);
+        }
+        let (mesh, k) = self.triangle(id);
+        mesh.surface(k, (o, d))
     }
 
     /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
@@ -341,6 +428,11 @@ impl World {
     /// else. See [`range`](crate::scene::range).
     pub fn beyond_f32(&self) -> Option<NodeId> {
         let holds = |x: f64| x == 0.0 || (SMALLEST_F32..=LARGEST_F32).contains(&x.abs());
+        let edges_hold = |[a, b, c]: [[f64; 3]; 3]| {
+            let edge = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).abs()).fold(0.0, larger);
+            let near = [a, b, c].as_flattened().iter().all(|x| x.abs() <= LARGEST_F32);
+            near && holds(edge(a, b)) && holds(edge(a, c))
+        };
         let fits = |p: &Primitive| match &p.kind {
             Kind::Sphere(r) => holds(*r),
             Kind::Plane => true,
@@ -348,10 +440,10 @@ impl World {
             Kind::Cuboid(half) => half.iter().all(|h| holds(*h)),
             Kind::Tube(t) => [t.radius, t.bottom, t.top].into_iter().all(holds),
             Kind::Ring(ring) => holds(ring.tube / ring.scale),
-            Kind::Triangle(i) => {
-                let [a, b, c] = self.triangles[*i as usize].v;
-                let edge = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).abs()).fold(0.0, larger);
-                holds(edge(a, b)) && holds(edge(a, c))
+            Kind::Triangle(i) => edges_hold(self.triangles[*i as usize].v),
+            Kind::Mesh(i) => {
+                let mesh = &self.meshes[*i as usize];
+                (0..mesh.len() as u32).all(|k| edges_hold(mesh.corners(k)))
             }
         };
         let near = |p: &Primitive| p.frame.centre.iter().all(|x| x.abs() <= LARGEST_F32);
@@ -364,6 +456,7 @@ impl World {
         self.primitives.len() * (size_of::<Primitive>() + size_of::<(NodeId, MaterialId)>())
             + self.maps.len() * size_of::<LinearMap>()
             + self.triangles.len() * size_of::<TriangleData>()
+            + self.meshes.iter().map(|m| m.memory_bytes()).sum::<usize>()
             + self.spaces.len() * size_of::<MadeSpace>()
             + self.bvh.memory_bytes()
             + self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>()
@@ -382,17 +475,18 @@ impl World {
 /// The old world's tree, with what became of its primitives.
 fn grafted(
     (old, old_keys): (&World, &[PrimitiveKey]),
-    keys: &[PrimitiveKey],
+    (new, keys): (&World, &[PrimitiveKey]),
     bounded: &[(u32, Bounds)],
 ) -> Option<Bvh> {
     let renumbered = same_geometry(old_keys, keys);
     let mut is_new = vec![true; keys.len()];
     renumbered.iter().filter(|&&id| id != u32::MAX).for_each(|&id| is_new[id as usize] = false);
-    old.bvh.grafted(&renumbered, bounded.iter().filter(|b| is_new[b.0 as usize]).copied().collect())
+    let added = bounded.iter().filter(|b| is_new[new.owners.of(b.0) as usize]).copied().collect();
+    old.bvh.grafted(&surfaces_renumbered(renumbered, old, new), added)
 }
 
 /// Centre and half height of a shape in the space in which it is made; a plane's point and ½.
-fn middle(shape: &crate::scene::Shape) -> ([Dd; 3], f64) {
+fn middle(shape: &crate::scene::Shape, scene: &Scene) -> ([Dd; 3], f64) {
     use crate::scene::Shape::*;
     let exactly = |p: &DVec3| p.to_array().map(Dd::new);
     let of_points = |points: &[DVec3]| {
@@ -410,6 +504,7 @@ fn middle(shape: &crate::scene::Shape) -> ([Dd; 3], f64) {
         Torus { at, tube, .. } => (exactly(at), *tube),
         Triangle { points, .. } => of_points(points),
         Tetrahedron { points } => of_points(points),
+        Mesh { mesh, .. } => of_points(&scene.mesh(*mesh).data.bounds),
     };
     (centre, if half > 0.0 { half } else { 0.5 })
 }

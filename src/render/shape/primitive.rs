@@ -1,8 +1,9 @@
 //! One surface of the world: a shape, where it stands, what it is made of.
 
+use super::triangle::Sides;
 use super::{Ring, TriangleData, Tube, Visit, cuboid, flat, sphere, torus, triangle, tube};
 use crate::math::Real;
-use crate::math::real::{dot, each3, scaled};
+use crate::math::real::{dot, each3, scaled, splat3};
 use crate::render::frame::{Frame, LinearMap};
 use crate::render::ray::Own;
 
@@ -42,6 +43,8 @@ pub enum Kind {
     Ring(Ring),
     /// By number in the world's table. Its corners stand in the world, so the frame isn't used.
     Triangle(u32),
+    /// By number in the world's table. Its triangles are surfaces with numbers of their own; it is none itself.
+    Mesh(u32),
 }
 
 /// The world's tables that primitives refer to.
@@ -83,7 +86,8 @@ impl Primitive {
         visit: &mut impl Visit<R>,
     ) {
         if let Kind::Triangle(i) = self.kind {
-            return triangle::crossing(&tables.triangles[i as usize], o, d, own, visit);
+            let v = each3(tables.triangles[i as usize].v, splat3);
+            return triangle::crossing(v, o, d, own, visit);
         }
         let ray = self.frame.localize::<R, AT_EYE>(tables.maps, o, d);
         match &self.kind {
@@ -93,7 +97,7 @@ impl Primitive {
             Kind::Cuboid(half) => cuboid::crossings(*half, &ray, own, visit),
             Kind::Tube(t) => tube::crossings(t, &ray, own, visit),
             Kind::Ring(ring) => torus::crossings(ring, &ray, own, visit),
-            Kind::Triangle(_) => {}
+            Kind::Triangle(_) | Kind::Mesh(_) => {}
         }
     }
 
@@ -109,15 +113,13 @@ impl Primitive {
     ) -> Surface<R> {
         if let Kind::Triangle(i) = self.kind {
             let tri = &tables.triangles[i as usize];
-            let (point, local) = triangle::point(tri, o, d);
-            let offset = dot(each3(point.n, |x| x.abs()), point.error);
-            let ns = triangle::shading_normal(tri, local, point.n);
-            return Surface { p: point.p, n: point.n, ns, offset, local };
+            let shading = tri.shading.map(|s| each3(s, splat3));
+            return triangle::surface(Sides { v: each3(tri.v, splat3), n: splat3(tri.n), shading }, o, d);
         }
         let p = self.frame.localize::<R, AT_EYE>(tables.maps, o, d).at(t);
         let point = match &self.kind {
             Kind::Sphere(r) => sphere::point(*r, p),
-            Kind::Plane | Kind::Disc { .. } | Kind::Triangle(_) => flat::point(p),
+            Kind::Plane | Kind::Disc { .. } | Kind::Triangle(_) | Kind::Mesh(_) => flat::point(p),
             Kind::Cuboid(half) => cuboid::point(*half, p, part),
             Kind::Tube(t) => tube::point(t, p, part),
             Kind::Ring(ring) => torus::point(ring, p),
