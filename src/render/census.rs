@@ -13,7 +13,7 @@ use crate::scene::Mesh;
 
 /// What a primitive is known and numbered by. Of two surfaces in the same place, that with the lower number is seen: an
 /// opaque one rather than one that lets light through, so that glass on a table stands on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PrimitiveKey {
     /// Its shape and place, after whether it lets light through.
     pub geometry: (bool, LengthKey),
@@ -30,7 +30,7 @@ impl PrimitiveKey {
     /// surfaces to the front.
     pub fn new(
         placed: &Placed,
-        made: &Made,
+        made: impl FnOnce() -> Made,
         (material, surfacing): (MaterialDigest, &Surfacing),
         meshes: &[Mesh],
     ) -> PrimitiveKey {
@@ -39,7 +39,7 @@ impl PrimitiveKey {
         if !surfacing.patterned {
             return PrimitiveKey { geometry, look, space: LengthKey::default(), transmit };
         }
-        let space = pattern_space(placed, made);
+        let space = pattern_space(placed, &made());
         if let Slot::Pattern(_) = surfacing.transmit {
             transmit = content_key([transmit, space.content, space.power, space.signed].into_iter());
         }

@@ -5,6 +5,7 @@
 //! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
 //! meet.
 
+mod assemble;
 pub mod batch;
 pub mod bounds;
 pub mod bvh;
@@ -30,6 +31,7 @@ mod retrace;
 mod search;
 mod shade;
 pub mod shape;
+mod standing;
 mod surface_pattern;
 mod texture;
 mod tile;

@@ -77,16 +77,19 @@ impl Placed {
 /// Relative size below which an entry of a map is the rounding error of a rotation: 512 roundings.
 pub const RESIDUE: f64 = 512.0 * f64::EPSILON;
 
-/// Puts `shape` into the world; a tetrahedron gives four triangles.
-pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
+/// How many primitives a shape is: a tetrahedron is four triangles.
+pub fn parts(shape: &Shape) -> usize {
+    if let Shape::Tetrahedron { .. } = shape { 4 } else { 1 }
+}
+
+/// Puts part number `part` of `shape` into the world.
+pub fn place(shape: &Shape, world_from_object: &Affine, part: usize) -> Placed {
     match shape {
-        Shape::Sphere { at, r } => vec![sphere(*at, *r, world_from_object)],
-        Shape::Plane { through, normal } => {
-            vec![framed(Kind::Plane, axis_frame(*through, *normal), None, world_from_object)]
-        }
+        Shape::Sphere { at, r } => sphere(*at, *r, world_from_object),
+        Shape::Plane { through, normal } => framed(Kind::Plane, axis_frame(*through, *normal), None, world_from_object),
         Shape::Disc { at, normal, r, hole } => {
             let kind = Kind::Disc { r: *r, hole: *hole };
-            vec![framed(kind, axis_frame(*at, *normal), Some([[0.0; 3], [*r, 0.0, *r]]), world_from_object)]
+            framed(kind, axis_frame(*at, *normal), Some([[0.0; 3], [*r, 0.0, *r]]), world_from_object)
         }
         Shape::Box { from, to } => {
             let half = ((*to - *from) * 0.5).to_array();
@@ -97,37 +100,30 @@ pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
             if let Form::Framed(Kind::Cuboid(half)) = placed.form {
                 placed.hang(world_from_object, *from, half);
             }
-            vec![placed]
+            placed
         }
-        Shape::Cylinder { from, to, r, caps } => vec![tube(*from, *to, *r, *r, *caps, world_from_object)],
-        Shape::Cone { from, to, r, top, caps } => vec![tube(*from, *to, *r, *top, *caps, world_from_object)],
+        Shape::Cylinder { from, to, r, caps } => tube(*from, *to, *r, *r, *caps, world_from_object),
+        Shape::Cone { from, to, r, top, caps } => tube(*from, *to, *r, *top, *caps, world_from_object),
         Shape::Torus { at, r, tube, axis } => {
             let out = r + tube;
             let kind = Kind::Ring(Ring::new(*r, *tube));
-            vec![framed(kind, axis_frame(*at, *axis), Some([[0.0; 3], [out, *tube, out]]), world_from_object)]
+            framed(kind, axis_frame(*at, *axis), Some([[0.0; 3], [out, *tube, out]]), world_from_object)
         }
-        Shape::Triangle { points, normals } => {
-            vec![triangle(*points, *normals, world_from_object)]
-        }
+        Shape::Triangle { points, normals } => triangle(*points, *normals, world_from_object),
         Shape::Tetrahedron { points: [a, b, c, d] } => {
             // Corners of each face go round counter-clockwise seen from outside.
             let outward = (*b - *a).cross(*c - *a).dot(*d - *a) < 0.0;
-            let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
-            faces
-                .into_iter()
-                .map(|[p, q, r]| {
-                    let corners = if outward { [*p, *q, *r] } else { [*p, *r, *q] };
-                    triangle(corners, None, world_from_object)
-                })
-                .collect()
+            let [p, q, r] = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]][part];
+            let corners = if outward { [*p, *q, *r] } else { [*p, *r, *q] };
+            triangle(corners, None, world_from_object)
         }
-        Shape::Mesh { mesh, smooth } => vec![Placed {
+        Shape::Mesh { mesh, smooth } => Placed {
             form: Form::Mesh(*mesh, *smooth),
             world_from_local: *world_from_object,
             made_from_local: Affine::IDENTITY,
             rescale: None,
             extent: None,
-        }],
+        },
     }
 }
 
@@ -342,7 +338,7 @@ mod tests {
     #[test]
     fn scaling_goes_into_the_size_and_turning_into_the_frame() {
         let world = Affine::rotation(2, 90.0).compose(&Affine::scaling(DVec3::splat(3.0)));
-        let placed = &place(&Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Y, r: 2.0, caps: true }, &world)[0];
+        let placed = place(&Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Y, r: 2.0, caps: true }, &world, 0);
         let Form::Framed(Kind::Tube(t)) = &placed.form else { panic!() };
         assert_eq!((t.radius, t.top), (6.0, 3.0));
         assert_eq!(placed.rescale.unwrap().faces[1], [(0.0, 0.0), (3.0, 1.0)]);
@@ -358,9 +354,9 @@ mod tests {
             let glass = Shape::Box { from: DVec3::new(-0.42, 0.0, -0.42), to: DVec3::new(0.42, 0.7, 0.42) };
             let cone = Shape::Cone { from: DVec3::ZERO, to: DVec3::Y * 0.7, r: 0.3, top: 0.0, caps: true };
             let level =
-                place(&Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, &world)[0].world_from_local.shift[1];
+                place(&Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, &world, 0).world_from_local.shift[1];
             for shape in [glass, cone] {
-                let placed = &place(&shape, &turned)[0];
+                let placed = place(&shape, &turned, 0);
                 assert_eq!(placed.world_from_local.linear_f64()[1], [0.0, 1.0, 0.0], "{s}");
                 let lowest = match &placed.form {
                     Form::Framed(Kind::Cuboid(half)) => -half[1],
@@ -377,7 +373,8 @@ mod tests {
     fn tetrahedron_faces_look_outwards_whatever_the_order_of_corners() {
         let p = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         for points in [p, [p[1], p[0], p[2], p[3]]] {
-            for face in place(&Shape::Tetrahedron { points }, &Affine::IDENTITY) {
+            for part in 0..4 {
+                let face = place(&Shape::Tetrahedron { points }, &Affine::IDENTITY, part);
                 let Form::Triangle(v, n, _) = face.form else { panic!() };
                 let from_middle = DVec3::from_array(v[0]) - DVec3::splat(0.2);
                 assert!(from_middle.dot(DVec3::from_array(n)) > 0.0);

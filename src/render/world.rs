@@ -7,25 +7,17 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
-use super::census::{PrimitiveKey, same_geometry, surfaces_renumbered};
-use super::digest::{LengthKey, MaterialDigest, material_digests};
-use super::frame::Frame;
-use super::material::{MaterialCompiler, Slot, Surfacing};
+use super::frame::LinearMap;
+use super::material::{Slot, Surfacing};
 use super::pattern::PatternTable;
-use super::place::{Form, Placed, Rescale, place, world_bounds};
+use super::place::Rescale;
 use super::ray::Own;
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
 use super::touch::{lies_on, lies_on_triangle, neighbourhood};
-use crate::math::real::three;
 use crate::math::{Affine, Dd, Real};
-use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
-use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
-use glam::DVec3;
-use rayon::prelude::*;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use crate::scene::{MaterialId, NodeId};
 
 /// The scene as the tracer sees it.
 pub struct World {
@@ -75,9 +67,9 @@ impl Owners {
 /// The way from a primitive's frame to the space in which its shape was made.
 pub(super) struct MadeSpace {
     pub(super) made_from_local: Affine,
-    pub(super) rescale: Option<Rescale>,
+    pub(super) rescale: Option<Box<Rescale>>,
     /// Only where a picture or a bump asks.
-    pub(super) detail: Option<MadeDetail>,
+    pub(super) detail: Option<Box<MadeDetail>>,
 }
 
 /// What pictures and bumps need of a shape.
@@ -107,14 +99,6 @@ pub(super) struct PointLight {
     pub(super) node: NodeId,
 }
 
-/// A primitive with what it is numbered by.
-struct Entry {
-    key: PrimitiveKey,
-    placed: Placed,
-    instance: Instance,
-    made: Made,
-}
-
 /// How a shape's own space lies.
 pub(super) struct Made {
     pub(super) world_from_object: Affine,
@@ -123,198 +107,7 @@ pub(super) struct Made {
 }
 
 impl World {
-    /// Prepares `scene` as seen by `camera`.
-    pub fn build(scene: &Scene, camera: &Camera) -> World {
-        match World::build_keyed(scene, camera, None, &AtomicBool::new(false)) {
-            Some((world, _)) => world,
-            None => unreachable!("nothing cancels it"),
-        }
-    }
-
-    /// Prepares `scene` as seen by `camera`, and says what each primitive is known by; `None` where `cancel` was set
-    /// meanwhile. The tree of the world `before`, with its keys, goes on living where little changed.
-    pub(super) fn build_keyed(
-        scene: &Scene,
-        camera: &Camera,
-        before: Option<(&World, &[PrimitiveKey])>,
-        cancel: &AtomicBool,
-    ) -> Option<(World, Vec<PrimitiveKey>)> {
-        let go_on = || if cancel.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        let to_camera = Affine::translation(-camera.from);
-        let (mut shapes, mut lights) = (Vec::new(), Vec::new());
-        // From the camera down: what moves both scene and camera cancels first, exactly.
-        let visited = scene.try_for_each_instance_from(&to_camera, |i| {
-            match &scene.node(i.node).kind {
-                NodeKind::Light(light) => {
-                    let at = i.world_from_object.apply(light.at).to_array();
-                    let color = (light.color * light.power).0;
-                    if color != [0.0; 3] {
-                        lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
-                    }
-                }
-                NodeKind::Shape(_) => shapes.push(i),
-                NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
-            }
-            go_on()
-        });
-        if visited.is_break() {
-            return None;
-        }
-        lights.sort_by_cached_key(|l| LengthKey::new(l.color.into_iter(), l.at.into_iter()));
-
-        let mut world = World {
-            primitives: Vec::new(),
-            origins: Vec::new(),
-            maps: Vec::new(),
-            triangles: Vec::new(),
-            meshes: Vec::new(),
-            owners: Owners::default(),
-            spaces: Vec::new(),
-            unbounded: Vec::new(),
-            bvh: Bvh::default(),
-            materials: Vec::new(),
-            patterns: PatternTable::default(),
-            lights,
-            camera: CameraFrame::new(camera),
-            eye: camera.from.to_array(),
-            background: scene.background.0,
-            ambient: scene.ambient.0,
-        };
-        let digests = material_digests(scene);
-        let numbers = world.compile_materials(scene, &shapes, &digests);
-        let mut entries = Vec::with_capacity(shapes.len());
-        for instance in shapes {
-            let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
-            if go_on().is_break() {
-                return None;
-            }
-            let world_from_object = instance.world_from_object;
-            for placed in place(shape, &world_from_object) {
-                let (centre, half_height) = middle(shape, scene);
-                let made = Made { world_from_object, centre, half_height };
-                let material = instance.material.0 as usize;
-                let surfacing = &world.materials[numbers[material] as usize];
-                let key = PrimitiveKey::new(&placed, &made, (digests[material], surfacing), &scene.meshes);
-                entries.push(Entry { key, placed, instance: instance.clone(), made });
-            }
-        }
-        // Entries are large: their keys and numbers are sorted, and they stay where they are.
-        let mut order: Vec<(PrimitiveKey, u32)> = entries.iter().zip(0..).map(|(e, i)| (e.key, i)).collect();
-        order.sort_unstable();
-        let keys: Vec<PrimitiveKey> = order.iter().map(|o| o.0).collect();
-        let mut bounded = Vec::with_capacity(entries.len());
-        for &(_, i) in &order {
-            world.add(&entries[i as usize], &numbers, &mut bounded);
-            if go_on().is_break() {
-                return None;
-            }
-        }
-        world.add_meshes(scene, order.iter().map(|(_, i)| &entries[*i as usize]), &mut bounded);
-        // Boxes are relative to the camera's place.
-        let before = before.filter(|(old, _)| old.eye == world.eye);
-        world.bvh =
-            before.and_then(|b| grafted(b, (&world, &keys), &bounded)).unwrap_or_else(|| Bvh::build_unless(bounded, cancel));
-        if go_on().is_break() {
-            return None;
-        }
-        world.find_touched_surfaces();
-        Some((world, keys))
-    }
-
-    /// Compiles the materials that shapes wear; gives each scene material its number here. They are compiled in the order of
-    /// their content: which patterns get a space of their own, where there are too many, isn't left to the text.
-    fn compile_materials(&mut self, scene: &Scene, shapes: &[Instance], digests: &[MaterialDigest]) -> Vec<u32> {
-        let mut worn: Vec<usize> = Vec::new();
-        let mut numbers = vec![u32::MAX; scene.materials.len()];
-        for i in shapes {
-            let number = &mut numbers[i.material.0 as usize];
-            if *number == u32::MAX {
-                *number = 0;
-                worn.push(i.material.0 as usize);
-            }
-        }
-        worn.sort_by_key(|&m| digests[m].all);
-        let mut compiler = MaterialCompiler::new(scene);
-        for m in worn {
-            numbers[m] = self.materials.len() as u32;
-            self.materials.push(compiler.compile(&scene.materials[m], !self.lights.is_empty()));
-        }
-        self.patterns = compiler.finish();
-        numbers
-    }
-
-    fn add(&mut self, entry: &Entry, numbers: &[u32], bounded: &mut Vec<(u32, Bounds)>) {
-        let Entry { placed, instance, made, .. } = entry;
-        let id = self.primitives.len() as u32;
-        let material = numbers[instance.material.0 as usize];
-        let surfacing = &self.materials[material as usize];
-        let mut space = Primitive::NO_SPACE;
-        if surfacing.patterned {
-            space = self.spaces.len() as u32;
-            let detail = (surfacing.pictured || surfacing.bump.is_some()).then(|| {
-                let back = made.world_from_object.inverse().unwrap_or(Affine::IDENTITY);
-                MadeDetail {
-                    made_normal_from_world: transposed(&made.world_from_object),
-                    world_normal_from_made: transposed(&back),
-                    from_centre: three(|i| (placed.made_from_local.shift[i] - made.centre[i]).round()),
-                    half_height: made.half_height,
-                }
-            });
-            self.spaces.push(MadeSpace { made_from_local: placed.made_from_local, rescale: placed.rescale, detail });
-        }
-        let maps = &mut self.maps;
-        let frame = Frame::new(&placed.world_from_local, |m| {
-            maps.push(m);
-            maps.len() as u32 - 1
-        });
-        let kind = match placed.form {
-            Form::Framed(kind) => kind,
-            Form::Triangle(v, n, shading) => {
-                self.triangles.push(TriangleData { v, n, shading });
-                bounded.push((id, Bounds::of_points(v)));
-                Kind::Triangle(self.triangles.len() as u32 - 1)
-            }
-            Form::Mesh(..) => {
-                self.owners.meshes.push((0, id));
-                Kind::Mesh(self.owners.meshes.len() as u32 - 1)
-            }
-        };
-        match placed.extent {
-            Some(extent) => bounded.push((id, world_bounds(extent, &placed.world_from_local))),
-            None if matches!(kind, Kind::Plane) => {
-                let n = frame.normal_to_world(&self.maps, [0.0, 1.0, 0.0]);
-                let offset = (0..3).map(|i| n[i] * frame.centre[i]).sum();
-                self.unbounded.push(Unbounded { id, n, offset });
-            }
-            None => {}
-        }
-        self.primitives.push(Primitive { kind, frame, material, space });
-        self.origins.push((instance.node, instance.material));
-    }
-
-    /// Adds the triangles of the meshes among the primitives, which are `entries`, with numbers after all of those.
-    fn add_meshes<'e>(
-        &mut self,
-        scene: &Scene,
-        entries: impl Iterator<Item = &'e Entry>,
-        bounded: &mut Vec<(u32, Bounds)>,
-    ) {
-        self.owners.primitives = self.primitives.len() as u32;
-        let mut first = self.owners.primitives;
-        for (entry, owner) in entries.zip(0..) {
-            let Form::Mesh(id, smooth) = entry.placed.form else { continue };
-            let mesh = Mesh::new(&scene.mesh(id).data, smooth, &entry.placed.world_from_local, (first, owner));
-            self.owners.meshes[self.meshes.len()] = (first, owner);
-            let triangles = 0..mesh.len() as u32;
-            bounded.par_extend(
-                triangles.into_par_iter().map(|k| (first + k, Bounds::of_points(mesh.corners(k)))),
-            );
-            first += mesh.len() as u32;
-            self.meshes.push(mesh);
-        }
-    }
-
-    fn find_touched_surfaces(&mut self) {
+    pub(super) fn find_touched_surfaces(&mut self) {
         let mut lights = std::mem::take(&mut self.lights);
         for light in &mut lights {
             let around = neighbourhood(light.at);
@@ -470,47 +263,4 @@ impl World {
             Slot::Pattern(_) => None,
         }
     }
-}
-
-/// The old world's tree, with what became of its primitives.
-fn grafted(
-    (old, old_keys): (&World, &[PrimitiveKey]),
-    (new, keys): (&World, &[PrimitiveKey]),
-    bounded: &[(u32, Bounds)],
-) -> Option<Bvh> {
-    let renumbered = same_geometry(old_keys, keys);
-    let mut is_new = vec![true; keys.len()];
-    renumbered.iter().filter(|&&id| id != u32::MAX).for_each(|&id| is_new[id as usize] = false);
-    let added = bounded.iter().filter(|b| is_new[new.owners.of(b.0) as usize]).copied().collect();
-    old.bvh.grafted(&surfaces_renumbered(renumbered, old, new), added)
-}
-
-/// Centre and half height of a shape in the space in which it is made; a plane's point and ½.
-fn middle(shape: &crate::scene::Shape, scene: &Scene) -> ([Dd; 3], f64) {
-    use crate::scene::Shape::*;
-    let exactly = |p: &DVec3| p.to_array().map(Dd::new);
-    let of_points = |points: &[DVec3]| {
-        let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-        // The middle of two numbers far out may lie between two numbers.
-        let half = ((hi - lo) * 0.5).to_array();
-        (three(|i| exactly(&lo)[i] + Dd::new(half[i])), half[1])
-    };
-    let (centre, half) = match shape {
-        Sphere { at, r } => (exactly(at), *r),
-        Plane { through, .. } => (exactly(through), 0.5),
-        Box { from, to } => of_points(&[*from, *to]),
-        Disc { at, r, .. } => (exactly(at), *r),
-        Cylinder { from, to, .. } | Cone { from, to, .. } => of_points(&[*from, *to]),
-        Torus { at, tube, .. } => (exactly(at), *tube),
-        Triangle { points, .. } => of_points(points),
-        Tetrahedron { points } => of_points(points),
-        Mesh { mesh, .. } => of_points(&scene.mesh(*mesh).data.bounds),
-    };
-    (centre, if half > 0.0 { half } else { 0.5 })
-}
-
-/// The transposed linear part: normals go by the inverse transposed.
-fn transposed(map: &Affine) -> [[f64; 3]; 3] {
-    let m = map.linear_f64();
-    std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
 }

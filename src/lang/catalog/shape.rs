@@ -1,10 +1,10 @@
 //! Shapes.
 
+use crate::lang::build::AssetFile;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Param, Run, Ty, Word, optional, required};
 use crate::scene::{NodeKind, Shape, range};
-use crate::lang::build::AssetFile;
 use glam::DVec3;
 
 const MAT: Param =

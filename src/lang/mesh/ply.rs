@@ -151,7 +151,10 @@ fn header(bytes: &[u8], limits: &Limits) -> Result<Header, String> {
             ["element", name, count] => {
                 let count: u64 = count.parse().map_err(|_| odd())?;
                 if matches!(name, "vertex" | "face") && count > limits.surfaces {
-                    return Err(format!("it is too large: {count} {}", if name == "face" { "faces" } else { "points" }));
+                    return Err(format!(
+                        "it is too large: {count} {}",
+                        if name == "face" { "faces" } else { "points" }
+                    ));
                 }
                 let count = usize::try_from(count).map_err(|_| odd())?;
                 elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
@@ -282,13 +285,7 @@ fn vertices(element: &Element, rows: &mut Rows<'_>, raw: &mut Raw) -> Result<(),
     Ok(())
 }
 
-fn faces(
-    element: &Element,
-    rows: &mut Rows<'_>,
-    points: usize,
-    limits: &Limits,
-    raw: &mut Raw,
-) -> Result<(), String> {
+fn faces(element: &Element, rows: &mut Rows<'_>, points: usize, limits: &Limits, raw: &mut Raw) -> Result<(), String> {
     let list = element.column(&["vertex_indices", "vertex_index"]);
     let list = list.filter(|&i| element.properties[i].length.is_some());
     let list = list.ok_or("its faces have no list `vertex_indices`")?;

@@ -82,13 +82,7 @@ impl Mesh {
 
     /// Calls `visit(t, part, valid)` for the crossing of lines with triangle `k`.
     #[inline(always)]
-    pub fn crossing<R: Real>(
-        &self,
-        k: u32,
-        (o, d): ([R; 3], [R; 3]),
-        own: Option<Own<R>>,
-        visit: &mut impl Visit<R>,
-    ) {
+    pub fn crossing<R: Real>(&self, k: u32, (o, d): ([R; 3], [R; 3]), own: Option<Own<R>>, visit: &mut impl Visit<R>) {
         let [a, b, c] = self.corners(k);
         triangle::crossing([splat3(a), splat3(b), splat3(c)], o, d, own, visit);
     }

@@ -75,13 +75,7 @@ fn edges<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3]) -> Edges<R> {
 
 /// Calls `visit(t, part, valid)` for the crossing with the triangle between the corners `v`: one for all lanes, or one a lane.
 #[inline(always)]
-pub fn crossing<R: Real>(
-    v: [[R; 3]; 3],
-    o: [R; 3],
-    d: [R; 3],
-    own: Option<Own<R>>,
-    visit: &mut impl Visit<R>,
-) {
+pub fn crossing<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3], own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let x = edges(v, o, d);
     let mut valid = x.hit;
     if !valid.any() {
