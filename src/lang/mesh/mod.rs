@@ -1,7 +1,10 @@
 //! Reads mesh files: PLY, OBJ and STL, known by their content. A format has a reader of its own; what the readers have in common,
 //! checking what they read and leaving out what has no area, stands here.
 
+mod obj;
 mod ply;
+mod stl;
+mod words;
 
 use super::build::AssetFile;
 use super::limits::Limits;
@@ -88,15 +91,27 @@ fn open(file: &AssetFile, loader: &mut Loader) -> Result<Mesh, Diagnostic> {
     let bytes = read(&path, FILE_BYTES).map_err(|e| refuse(reason(&e)))?;
     let digest = loader.was_read(dependency, &path, &bytes);
     let limits = loader.limits;
-    let decode = || decode(bytes, &limits).map(|data| Mesh { path: path.clone(), digest, data: Arc::new(data) });
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    let decode =
+        || decode(bytes, &ending, &limits).map(|data| Mesh { path: path.clone(), digest, data: Arc::new(data) });
     let mesh = loader.store.meshes.get(digest, decode).map_err(refuse)?;
     Ok(Mesh { path, ..mesh })
 }
 
-/// The mesh that `bytes` are; why they are none, in words, otherwise.
-fn decode(bytes: Vec<u8>, limits: &Limits) -> Result<MeshData, String> {
-    let raw = if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
-        ply::read(&bytes, limits)?
+/// The mesh that `bytes` are, of a file whose name ends in `ending`; why they are none, in words, otherwise.
+fn decode(bytes: Vec<u8>, ending: &str, limits: &Limits) -> Result<MeshData, String> {
+    let begins = |word: &[u8]| bytes.trim_ascii_start().starts_with(word);
+    let has_points = || words::lines(&bytes).any(|(_, l)| l.starts_with(b"v ") || l.starts_with(b"v\t"));
+    let raw = if begins(b"ply\n") || begins(b"ply\r") {
+        ply::read(bytes.trim_ascii_start(), limits)?
+    } else if stl::is_binary(&bytes) {
+        stl::read_binary(&bytes, limits)?
+    } else if begins(b"solid") && !bytes.contains(&0) {
+        stl::read_text(&bytes, limits)?
+    } else if ending == "stl" {
+        return Err("it is damaged: not a complete STL file".into());
+    } else if ending == "obj" || (!bytes.contains(&0) && has_points()) {
+        obj::read(&bytes, limits)?
     } else {
         return Err("it is neither a PLY, an OBJ nor an STL file".into());
     };
@@ -161,6 +176,19 @@ fn point_number(x: f64, count: usize, face: usize) -> Result<u32, String> {
     if x >= 0.0 && x < count as f64 && x.fract() == 0.0 {
         return Ok(x as u32);
     }
-    let points = if count == 1 { "1 point".into() } else { format!("{count} points") };
-    Err(format!("face {face} names point {x}, counted from 0, and there are {points}"))
+    Err(format!("face {face} names point {x}, counted from 0, and there are {}", plural(count, "point")))
+}
+
+fn plural(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Whether what was read so far is within the limits.
+fn check_size(raw: &Raw, limits: &Limits) -> Result<(), String> {
+    let largest = raw.triangles.len().max(raw.points.len()) as u64;
+    if largest > limits.surfaces { Err(too_large(limits)) } else { Ok(()) }
+}
+
+fn too_large(limits: &Limits) -> String {
+    format!("it is too large: it has more than {} triangles or points", limits.surfaces)
 }

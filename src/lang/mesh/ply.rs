@@ -2,6 +2,7 @@
 //!
 //! Greg Turk, "The PLY polygon file format", 1994. Points and faces are read and whatever else a file has is passed over.
 
+use super::words::shown;
 use super::{AT_ONCE, Raw, point_number};
 use crate::lang::limits::Limits;
 use rayon::prelude::*;
@@ -136,7 +137,7 @@ fn header(bytes: &[u8], limits: &Limits) -> Result<Header, String> {
         let line = String::from_utf8_lossy(&bytes[end..end + length]);
         end += length + 1;
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
-        let odd = || format!("its header has the line `{}`", line.trim().escape_debug());
+        let odd = || format!("its header has the line `{}`", shown(line.trim().as_bytes()));
         match words[..] {
             ["ply" | "comment" | "obj_info", ..] | [] => {}
             ["end_header"] => break,
@@ -151,10 +152,7 @@ fn header(bytes: &[u8], limits: &Limits) -> Result<Header, String> {
             ["element", name, count] => {
                 let count: u64 = count.parse().map_err(|_| odd())?;
                 if matches!(name, "vertex" | "face") && count > limits.surfaces {
-                    return Err(format!(
-                        "it is too large: {count} {}",
-                        if name == "face" { "faces" } else { "points" }
-                    ));
+                    return Err(super::too_large(limits));
                 }
                 let count = usize::try_from(count).map_err(|_| odd())?;
                 elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
@@ -201,7 +199,7 @@ impl<'b> Rows<'b> {
             return Err(ends_early());
         }
         let number = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
-        number.ok_or_else(|| format!("`{}` is no number", String::from_utf8_lossy(word).escape_debug()))
+        number.ok_or_else(|| format!("`{}` is no number", shown(word)))
     }
 
     fn take(&mut self, bytes: usize) -> Result<&'b [u8], String> {
@@ -314,9 +312,7 @@ fn faces(element: &Element, rows: &mut Rows<'_>, points: usize, limits: &Limits,
                     }
                 }
             }
-            if raw.triangles.len() as u64 > limits.surfaces {
-                return Err(format!("it is too large: more than {} triangles", limits.surfaces));
-            }
+            super::check_size(raw, limits)?;
         }
     }
     Ok(())
