@@ -3,13 +3,14 @@
 
 use super::bounds::Bounds;
 use super::bvh::Bvh;
-use super::digest::{LengthKey, MaterialDigest, content_key, power_to_unit};
+use super::digest::{KeyStart, LengthKey, MaterialDigest, content_key, power_to_unit};
 use super::material::{Slot, Surfacing};
 use super::place::{Form, Placed};
 use super::shape::Kind;
 use super::world::{Made, World};
 use crate::math::Affine;
 use crate::scene::Mesh;
+use std::sync::OnceLock;
 
 /// What a primitive is known and numbered by. Of two surfaces in the same place, that with the lower number is seen: an
 /// opaque one rather than one that lets light through, so that glass on a table stands on it.
@@ -156,6 +157,9 @@ impl Change {
     }
 }
 
+/// What the keys of spheres begin with whose frame is the world's, but for its origin.
+static MOVED_SPHERE: OnceLock<KeyStart> = OnceLock::new();
+
 /// Knows a shape and its place: all lengths, camera-relative, and what has no length.
 fn geometry(p: &Placed, meshes: &[Mesh]) -> LengthKey {
     // A stretched frame holds the scale that sizes don't; of any other frame the largest entry is about 1.
@@ -164,7 +168,12 @@ fn geometry(p: &Placed, meshes: &[Mesh]) -> LengthKey {
     let shift = p.world_from_local.shift.into_iter().flat_map(|x| [x.hi, x.lo]);
     let in_frame = |plain: &[f64], sizes: &[f64]| {
         let lengths = sizes.iter().map(|x| x / unit).chain(shift);
-        LengthKey::new(plain.iter().copied().chain(frame()), lengths)
+        let start = || KeyStart::new(plain.iter().copied().chain(frame()));
+        // Most frames are only moved.
+        match plain {
+            [1.0] if p.world_from_local.is_translation() => MOVED_SPHERE.get_or_init(start).with_lengths(lengths),
+            _ => start().with_lengths(lengths),
+        }
     };
     match &p.form {
         Form::Framed(kind) => match kind {

@@ -133,7 +133,7 @@ fn sphere(at: DVec3, r: f64, world_from_object: &Affine) -> Placed {
         return framed(Kind::Sphere(r), centre, Some([[0.0; 3], [r; 3]]), world_from_object);
     };
     // A turned sphere is a sphere: only its patterns turn.
-    let shift = world_from_object.compose(&centre).shift;
+    let shift = world_from_object.apply_dd(centre.shift);
     let turn = Affine { shift: [Dd::default(); 3], ..*world_from_object };
     let back = || turn.inverse().unwrap_or(Affine::IDENTITY);
     Placed {
@@ -178,7 +178,10 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
         };
     };
     // Sizes take the scale, so that the frame is a rotation, often none at all.
-    let unit = Affine::scaling(DVec3::splat(s)).inverse().unwrap_or(Affine::IDENTITY);
+    let unit = match s {
+        1.0 => Affine::IDENTITY,
+        _ => Affine::scaling(DVec3::splat(s)).inverse().unwrap_or(Affine::IDENTITY),
+    };
     let grow = |v: [f64; 3]| v.map(|x| x * s);
     let rescale = (s != 1.0).then(|| Rescale::new(s, &kind));
     let kind = match kind {
@@ -248,6 +251,9 @@ pub fn world_bounds(extent: [[f64; 3]; 2], world_from_local: &Affine) -> Bounds 
 
 /// The factor by which a map scales all lengths, or `None` where it stretches.
 fn similarity(map: &Affine) -> Option<f64> {
+    if map.is_translation() {
+        return Some(1.0);
+    }
     let m = map.linear_f64();
     let column = |a: usize, b: usize| (0..3).map(|r| m[r][a] * m[r][b]).sum::<f64>();
     let s2 = column(0, 0);

@@ -162,7 +162,7 @@ pub const WORDS: &[Word] = &[
             NAME,
         ],
         doc: "The triangles of a file, in the file's own units and axes; faces with more corners are parted into triangles.",
-        example: "mesh(\"assets/gem.ply\") |> rotate(y: 30deg)\nlight(at: [4, 8, 6])",
+        example: "mesh(\"assets/pumpkin.ply\", mat: phong(color: #e07414)) |> rotate(y: 30deg)\nlight(at: [4, 8, 6])",
         run: Run::Call(mesh),
     },
 ];

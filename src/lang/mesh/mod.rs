@@ -99,7 +99,7 @@ fn open(file: &AssetFile, loader: &mut Loader) -> Result<Mesh, Diagnostic> {
 }
 
 /// The mesh that `bytes` are, of a file whose name ends in `ending`; why they are none, in words, otherwise.
-fn decode(bytes: Vec<u8>, ending: &str, limits: &Limits) -> Result<MeshData, String> {
+pub fn decode(bytes: Vec<u8>, ending: &str, limits: &Limits) -> Result<MeshData, String> {
     let begins = |word: &[u8]| bytes.trim_ascii_start().starts_with(word);
     let has_points = || words::lines(&bytes).any(|(_, l)| l.starts_with(b"v ") || l.starts_with(b"v\t"));
     let raw = if begins(b"ply\n") || begins(b"ply\r") {

@@ -155,6 +155,9 @@ fn header(bytes: &[u8], limits: &Limits) -> Result<Header, String> {
                     return Err(super::too_large(limits));
                 }
                 let count = usize::try_from(count).map_err(|_| odd())?;
+                if elements.iter().any(|e: &Element| e.name == name) {
+                    return Err(odd()); // of two tables of points, which one do faces mean?
+                }
                 elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
             }
             ["property", ref kind @ .., name] => {

@@ -2,6 +2,7 @@
 
 mod hostile;
 mod memory;
+mod mesh;
 mod mistake;
 mod module;
 mod mutation;
