@@ -172,7 +172,7 @@ fn color_names(words: &[&Word]) -> String {
 
 fn limits() -> String {
     let l = Limits::default();
-    let rows: [(&str, u64); 17] = [
+    let rows: [(&str, u64); 18] = [
         ("bytes of one scene file", l.file_bytes as u64),
         ("imports within imports", l.import_depth as u64),
         ("brackets within brackets", BRACKET_DEPTH as u64),
