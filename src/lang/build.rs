@@ -6,7 +6,7 @@ use super::value::{Value, number_text};
 use super::values::Values;
 use crate::diag::{FileId, Place, Span};
 use crate::scene::{
-    Color, ImageId, Material, MaterialId, Node, NodeId, NodeKind, Pattern, PatternId, PatternKind, Scene, range,
+    Color, ImageId, Material, MaterialId, MeshId, Node, NodeId, NodeKind, Pattern, PatternId, PatternKind, Scene, range,
 };
 use ecow::EcoString;
 use std::collections::HashMap;
@@ -20,7 +20,9 @@ pub struct Build<'c> {
     traits: Vec<PatternTraits>,
     constants: HashMap<([u64; 3], bool), PatternId>,
     /// Picture files that patterns name, by image id; opened at the end, and only those that are shown.
-    pub pictures: Vec<PictureFile>,
+    pub pictures: Vec<AssetFile>,
+    /// Mesh files that shapes name, by mesh id; opened at the end, and only those that are shown.
+    pub mesh_files: Vec<AssetFile>,
     /// Where each setting was made, to refuse a second one.
     pub settings: Vec<(String, Span)>,
     /// Whether the scene's own default camera has been replaced.
@@ -43,14 +45,14 @@ struct PatternTraits {
     values: Values,
 }
 
-/// A picture file as a scene names it.
+/// A picture or mesh file as a scene names it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PictureFile {
+pub struct AssetFile {
     /// As written.
     pub path: EcoString,
     /// The text that names it; paths start at its folder.
     pub file: FileId,
-    /// The `image(…)` expression.
+    /// The name in the text.
     pub span: Span,
 }
 
@@ -72,6 +74,7 @@ impl<'c> Build<'c> {
             traits,
             constants: HashMap::new(),
             pictures: Vec::new(),
+            mesh_files: Vec::new(),
             settings: Vec::new(),
             has_camera: false,
             limits,
@@ -220,13 +223,13 @@ impl<'c> Build<'c> {
     }
 
     /// The image that stands for a picture file.
-    pub fn image(&mut self, file: PictureFile) -> ImageId {
-        let known = self.pictures.iter().position(|p| p.path == file.path && p.file == file.file);
-        let index = known.unwrap_or_else(|| {
-            self.pictures.push(file);
-            self.pictures.len() - 1
-        });
-        ImageId(index as u32)
+    pub fn image(&mut self, file: AssetFile) -> ImageId {
+        ImageId(number_of(file, &mut self.pictures))
+    }
+
+    /// The mesh that stands for a mesh file.
+    pub fn mesh(&mut self, file: AssetFile) -> MeshId {
+        MeshId(number_of(file, &mut self.mesh_files))
     }
 
     /// The value of a material's slot, by name.
@@ -278,4 +281,14 @@ impl<'c> Build<'c> {
         }
         Err(Fault::budget(format!("the scene makes more than {most} {what}"), "usually a loop that runs too often"))
     }
+}
+
+/// The number of `file` among `files`, to which it is added unless it is there.
+fn number_of(file: AssetFile, files: &mut Vec<AssetFile>) -> u32 {
+    let known = files.iter().position(|f| f.path == file.path && f.file == file.file);
+    let index = known.unwrap_or_else(|| {
+        files.push(file);
+        files.len() - 1
+    });
+    index as u32
 }

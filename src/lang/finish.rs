@@ -1,18 +1,22 @@
 //! The last look at a scene: what can only be seen when it is whole. Shapes must keep a supported size where they stand
 //! in the world, and the pictures that they show are opened.
 
-use super::build::PictureFile;
+use super::build::AssetFile;
 use super::load::{Loader, read, reason};
 use super::measure::{is_measurable, misplaced, misplaced_light};
-use super::picture;
+use super::{mesh, picture};
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::math::Affine;
-use crate::scene::{Color, Image, ImageId, Material, NodeId, NodeKind, PatternId, PatternKind, Scene};
+use crate::scene::{Color, Image, ImageId, Material, NodeId, NodeKind, PatternId, PatternKind, Scene, Shape};
 use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
 
 /// Checks the scene and loads its pictures.
-pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) -> Diagnostics {
+pub fn finish(
+    scene: &mut Scene,
+    (pictures, mesh_files): (&[AssetFile], &[AssetFile]),
+    loader: &mut Loader,
+) -> Diagnostics {
     let mut errors = Vec::new();
     let count = scene.instance_count();
     let most = loader.limits.instances;
@@ -24,7 +28,14 @@ pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) 
         }
         return vec![d];
     }
+    if !mesh_files.is_empty() {
+        let failed = mesh::load_meshes(scene, mesh_files, loader);
+        if !failed.is_empty() || loader.is_cancelled() {
+            return failed;
+        }
+    }
     let mut materials = HashSet::new();
+    let mut surfaces = 0u64;
     let mut bad: HashSet<NodeId> = HashSet::new();
     let cancelled = scene.try_for_each_instance(|i| {
         if loader.is_cancelled() {
@@ -34,7 +45,15 @@ pub fn finish(scene: &mut Scene, pictures: &[PictureFile], loader: &mut Loader) 
         let place = match &node.kind {
             NodeKind::Shape(shape) => {
                 materials.insert(i.material);
-                misplaced(shape, &i.world_from_object)
+                surfaces = surfaces.saturating_add(match shape {
+                    Shape::Mesh { mesh, .. } => 1 + scene.mesh(*mesh).data.triangles.len() as u64,
+                    _ => 1,
+                });
+                if surfaces > loader.limits.surfaces && !mesh_files.is_empty() {
+                    errors.push(mesh::too_many(&loader.limits, node));
+                    return ControlFlow::Break(());
+                }
+                misplaced(scene, shape, &i.world_from_object)
             }
             NodeKind::Light(light) => misplaced_light(light.at, &i.world_from_object),
             _ => None,
@@ -107,7 +126,7 @@ fn slots(m: &Material) -> impl Iterator<Item = PatternId> {
 /// Opens the pictures that `live` patterns show. Patterns that nothing shows become black, so that no picture is missing.
 fn load_pictures(
     scene: &mut Scene,
-    pictures: &[PictureFile],
+    pictures: &[AssetFile],
     loader: &mut Loader,
     mut stack: Vec<PatternId>,
 ) -> Diagnostics {
@@ -146,7 +165,7 @@ fn load_pictures(
     errors
 }
 
-fn open(file: &PictureFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
+fn open(file: &AssetFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
     let (path, _, dependency) = loader.find(file.file, &file.path, file.span)?;
     let refuse = |why: String| Diagnostic::error(format!("can't show `{}`: {why}", file.path)).at(file.span, "");
     let bytes = read(&path, picture::FILE_BYTES).map_err(|e| refuse(reason(&e)))?;

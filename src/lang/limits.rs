@@ -29,6 +29,9 @@ pub struct Limits {
     pub pattern_depth: u32,
     /// Patterns that one pattern is made of, each counted at every use: the tracer evaluates them as a tree, at every hit.
     pub pattern_size: u64,
+    /// Triangles and points of one mesh file; and all surfaces in the world, a mesh's triangles counted at each of its places:
+    /// their numbers are exact in 32-bit lanes.
+    pub surfaces: u64,
     /// Texels of one picture file.
     pub image_texels: u64,
     /// Mistakes reported in one run.
@@ -60,6 +63,7 @@ impl Default for Limits {
             instances: 10_000_000,
             pattern_depth: 200,
             pattern_size: 100_000,
+            surfaces: (1 << 24) - 1,
             image_texels: 1 << 28,
             errors: 50,
         }

@@ -2,15 +2,15 @@
 
 use super::value::number_text;
 use crate::math::{Affine, Real};
-use crate::scene::{Shape, range};
+use crate::scene::{Scene, Shape, range};
 use glam::DVec3;
 
 /// What is right.
 const LENGTHS: &str = "a length or coordinate is 0, or from 1e-140 to 1e140 in size";
 
 /// Why a shape can't be traced where it stands: what it is there, and what would be right.
-pub fn misplaced(shape: &Shape, world_from_object: &Affine) -> Option<(String, &'static str)> {
-    if surely_placed(shape, world_from_object) {
+pub fn misplaced(scene: &Scene, shape: &Shape, world_from_object: &Affine) -> Option<(String, &'static str)> {
+    if surely_placed(extent(scene, shape), world_from_object) {
         return None;
     }
     let m = world_from_object.linear_f64();
@@ -25,7 +25,7 @@ pub fn misplaced(shape: &Shape, world_from_object: &Affine) -> Option<(String, &
         let what = "between its turns it is scaled so unevenly that rounding leaves nothing of one direction";
         return Some(("is flattened beyond all measure".into(), what));
     }
-    let (points, small, large) = extent(shape);
+    let (points, small, large) = extent(scene, shape);
     if small * least < range::SMALLEST {
         return Some((format!("is too small: about {}", number_text(small * least)), LENGTHS));
     }
@@ -75,7 +75,7 @@ fn is_flattened(mut m: [[f64; 3]; 3]) -> bool {
 }
 
 /// Whether a shape stands so far within all limits that `f64` can tell: nearly every one does.
-fn surely_placed(shape: &Shape, world_from_object: &Affine) -> bool {
+fn surely_placed((points, small, large): ([DVec3; 4], f64, f64), world_from_object: &Affine) -> bool {
     /// Room to the limits: far more than the rounding of a few sums and products.
     const ROOM: f64 = 1e6;
     let m = world_from_object.linear_f64();
@@ -89,7 +89,6 @@ fn surely_placed(shape: &Shape, world_from_object: &Affine) -> bool {
     }
     // Rows of size 1: the determinant's rounding error is a few 1e-16.
     let [a, b, c] = [0, 1, 2].map(|r| DVec3::from_array(m[r].map(|x| x / rows[r])));
-    let (points, small, large) = extent(shape);
     let far = points.iter().map(|p| size(p.to_array())).fold(large, Real::max);
     let reach = 3.0 * size(rows) * far + size(world_from_object.shift_f64());
     a.cross(b).dot(c).abs() > 1e-9
@@ -98,7 +97,7 @@ fn surely_placed(shape: &Shape, world_from_object: &Affine) -> bool {
 }
 
 /// Points of a shape, its smallest and its largest size; 1 where it has none.
-fn extent(shape: &Shape) -> ([DVec3; 4], f64, f64) {
+fn extent(scene: &Scene, shape: &Shape) -> ([DVec3; 4], f64, f64) {
     let edges = |p: &[DVec3]| {
         let sizes = p.iter().skip(1).map(|q| (*q - p[0]).abs().max_element());
         sizes.fold((f64::INFINITY, 0f64), |(lo, hi), s| (Real::min(lo, s), Real::max(hi, s)))
@@ -120,6 +119,11 @@ fn extent(shape: &Shape) -> ([DVec3; 4], f64, f64) {
         Shape::Tetrahedron { points } => {
             let (lo, hi) = edges(&points[..]);
             (**points, lo, hi)
+        }
+        Shape::Mesh { mesh, .. } => {
+            let [lo, hi] = scene.mesh(*mesh).data.bounds;
+            let size = (hi - lo).max_element();
+            ([lo, hi, DVec3::new(lo.x, hi.y, lo.z), DVec3::new(hi.x, lo.y, hi.z)], size, size)
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What an evaluation leaves for the next: parsed files and decoded pictures, known by content.
+//! What an evaluation leaves for the next: parsed files, decoded pictures and meshes, known by content.
 
 use super::parse::Parsed;
 use super::request::{Evaluated, Failure};
 use super::running::Running;
 use crate::diag::FileId;
-use crate::scene::Image;
+use crate::scene::{Image, Mesh};
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::Arc;
@@ -30,6 +30,8 @@ pub(super) struct Store {
     pub(super) parses: Shelf<([u8; 32], FileId), Arc<Parsed>>,
     /// By the digest of the file's bytes.
     pub(super) pictures: Shelf<[u8; 32], Image>,
+    /// By the digest of the file's bytes.
+    pub(super) meshes: Shelf<[u8; 32], Mesh>,
 }
 
 impl Store {
@@ -37,6 +39,7 @@ impl Store {
     pub(super) fn end(&mut self, good: bool) {
         self.parses.end(good);
         self.pictures.end(good);
+        self.meshes.end(good);
     }
 
     /// How many parsed files and pictures there are.

@@ -24,6 +24,7 @@ mod load;
 mod machine;
 mod measure;
 mod memory;
+mod mesh;
 mod operation;
 mod ops;
 mod param;
@@ -194,10 +195,10 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
             break;
         }
     }
-    let Machine { build: Build { mut scene, pictures, .. }, params, errors: failed, .. } = machine;
+    let Machine { build: Build { mut scene, pictures, mesh_files, .. }, params, errors: failed, .. } = machine;
     errors.extend(failed);
     if errors.is_empty() {
-        errors = finish::finish(&mut scene, &pictures, &mut loader);
+        errors = finish::finish(&mut scene, (&pictures, &mesh_files), &mut loader);
     }
     let exports = resolver.exports.last().is_some_and(|e| !e.names.is_empty());
     let Loader { sources, files, .. } = loader;

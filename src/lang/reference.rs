@@ -172,7 +172,7 @@ fn color_names(words: &[&Word]) -> String {
 
 fn limits() -> String {
     let l = Limits::default();
-    let rows: [(&str, u64); 17] = [
+    let rows: [(&str, u64); 18] = [
         ("bytes of one scene file", l.file_bytes as u64),
         ("imports within imports", l.import_depth as u64),
         ("brackets within brackets", BRACKET_DEPTH as u64),
@@ -188,6 +188,7 @@ fn limits() -> String {
         ("shapes and lights in the scene, one that is used again counted again", l.instances),
         ("patterns within patterns", l.pattern_depth.into()),
         ("patterns that make up one pattern, one that is used again counted again", l.pattern_size),
+        ("triangles of meshes and other surfaces, at all their places together", l.surfaces),
         ("dots of a picture file", l.image_texels),
         ("mistakes reported in one run", l.errors as u64),
     ];

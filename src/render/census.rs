@@ -3,16 +3,18 @@
 
 use super::bounds::Bounds;
 use super::bvh::Bvh;
-use super::digest::{LengthKey, MaterialDigest, content_key, power_to_unit};
+use super::digest::{KeyStart, LengthKey, MaterialDigest, content_key, power_to_unit};
 use super::material::{Slot, Surfacing};
 use super::place::{Form, Placed};
 use super::shape::Kind;
 use super::world::{Made, World};
 use crate::math::Affine;
+use crate::scene::Mesh;
+use std::sync::OnceLock;
 
 /// What a primitive is known and numbered by. Of two surfaces in the same place, that with the lower number is seen: an
 /// opaque one rather than one that lets light through, so that glass on a table stands on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PrimitiveKey {
     /// Its shape and place, after whether it lets light through.
     pub geometry: (bool, LengthKey),
@@ -27,13 +29,18 @@ pub struct PrimitiveKey {
 impl PrimitiveKey {
     /// The key of a shape at its place. Geometry goes before look, so that painting never brings another of two coincident
     /// surfaces to the front.
-    pub fn new(placed: &Placed, made: &Made, material: MaterialDigest, surfacing: &Surfacing) -> PrimitiveKey {
-        let geometry = (surfacing.lets_through(), geometry(placed));
+    pub fn new(
+        placed: &Placed,
+        made: impl FnOnce() -> Made,
+        (material, surfacing): (MaterialDigest, &Surfacing),
+        meshes: &[Mesh],
+    ) -> PrimitiveKey {
+        let geometry = (surfacing.lets_through(), geometry(placed, meshes));
         let (look, mut transmit) = (material.all, material.transmit);
         if !surfacing.patterned {
             return PrimitiveKey { geometry, look, space: LengthKey::default(), transmit };
         }
-        let space = pattern_space(placed, made);
+        let space = pattern_space(placed, &made());
         if let Slot::Pattern(_) = surfacing.transmit {
             transmit = content_key([transmit, space.content, space.power, space.signed].into_iter());
         }
@@ -54,6 +61,16 @@ pub fn same_geometry(before: &[PrimitiveKey], after: &[PrimitiveKey]) -> Vec<u32
         if is_there { k as u32 - 1 } else { u32::MAX }
     };
     before.iter().map(new_number).collect()
+}
+
+/// The new number of every old surface, from that of every old primitive: triangles go with their mesh.
+pub fn surfaces_renumbered(mut renumbered: Vec<u32>, before: &World, after: &World) -> Vec<u32> {
+    for mesh in &before.meshes {
+        let there = renumbered[mesh.owner as usize];
+        let new = after.meshes.iter().find(|m| m.owner == there);
+        renumbered.extend((0..mesh.len() as u32).map(|k| new.map_or(u32::MAX, |m| m.first + k)));
+    }
+    renumbered
 }
 
 /// How a world differs from the one before it.
@@ -139,15 +156,23 @@ impl Change {
     }
 }
 
+/// What the keys of spheres begin with whose frame is the world's, but for its origin.
+static MOVED_SPHERE: OnceLock<KeyStart> = OnceLock::new();
+
 /// Knows a shape and its place: all lengths, camera-relative, and what has no length.
-fn geometry(p: &Placed) -> LengthKey {
+fn geometry(p: &Placed, meshes: &[Mesh]) -> LengthKey {
     // A stretched frame holds the scale that sizes don't; of any other frame the largest entry is about 1.
     let unit = power_to_unit(p.world_from_local.linear.iter().flatten().map(|x| x.hi));
     let frame = || p.world_from_local.linear.into_iter().flatten().flat_map(move |x| [x.hi * unit, x.lo * unit]);
     let shift = p.world_from_local.shift.into_iter().flat_map(|x| [x.hi, x.lo]);
     let in_frame = |plain: &[f64], sizes: &[f64]| {
         let lengths = sizes.iter().map(|x| x / unit).chain(shift);
-        LengthKey::new(plain.iter().copied().chain(frame()), lengths)
+        let start = || KeyStart::new(plain.iter().copied().chain(frame()));
+        // Most frames are only moved.
+        match plain {
+            [1.0] if p.world_from_local.is_translation() => MOVED_SPHERE.get_or_init(start).with_lengths(lengths),
+            _ => start().with_lengths(lengths),
+        }
     };
     match &p.form {
         Form::Framed(kind) => match kind {
@@ -157,12 +182,21 @@ fn geometry(p: &Placed) -> LengthKey {
             Kind::Cuboid(half) => in_frame(&[4.0], half),
             Kind::Tube(t) => in_frame(&[5.0, t.slope, t.caps as u8 as f64], &[t.radius, t.bottom, t.top]),
             Kind::Ring(r) => in_frame(&[6.0], &[r.r / r.scale, r.tube / r.scale]),
-            Kind::Triangle(_) => in_frame(&[7.0], &[]),
+            Kind::Triangle(_) | Kind::Mesh(_) => in_frame(&[7.0], &[]),
         },
         Form::Triangle(v, n, shading) => LengthKey::new(
             [n].into_iter().chain(shading.iter().flatten()).flatten().copied(),
             v.iter().flatten().copied(),
         ),
+        Form::Mesh(id, smooth) => {
+            let mesh = &meshes[id.0 as usize];
+            let mut plain = [8.0, *smooth as u8 as f64, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            for (word, bytes) in plain[2..].iter_mut().zip(mesh.digest.chunks(4)) {
+                *word = bytes.iter().fold(0u32, |w, b| w << 8 | *b as u32) as f64;
+            }
+            let [lo, hi] = mesh.data.bounds;
+            in_frame(&plain, &(hi - lo).to_array())
+        }
     }
 }
 

@@ -53,13 +53,34 @@ pub struct LengthKey {
 
 impl LengthKey {
     /// The key of `plain` numbers (a NaN stands for none) and `lengths`.
-    pub fn new(plain: impl Iterator<Item = f64> + Clone, lengths: impl Iterator<Item = f64> + Clone) -> LengthKey {
+    pub fn new(plain: impl Iterator<Item = f64>, lengths: impl Iterator<Item = f64> + Clone) -> LengthKey {
+        KeyStart::new(plain).with_lengths(lengths)
+    }
+}
+
+/// The beginning of a [`LengthKey`]: many things have the same.
+#[derive(Clone, Copy, Debug)]
+pub struct KeyStart {
+    content: KeyedHash,
+    signed: KeyedHash,
+}
+
+impl KeyStart {
+    /// Of `plain` numbers (a NaN stands for none).
+    pub fn new(plain: impl Iterator<Item = f64>) -> KeyStart {
+        plain.fold(KeyStart { content: KeyedHash::new(), signed: KeyedHash::new() }, KeyStart::with)
+    }
+
+    // -0 counts as 0.
+    fn with(self, x: f64) -> KeyStart {
+        KeyStart { content: self.content.with_f64(x.abs()), signed: self.signed.with_f64(x) }
+    }
+
+    /// The whole key.
+    pub fn with_lengths(self, lengths: impl Iterator<Item = f64> + Clone) -> LengthKey {
         let power = power_to_unit(lengths.clone());
-        let all = || plain.clone().chain(lengths.clone().map(|x| x * power));
-        // -0 counts as 0.
-        let content = all().fold(KeyedHash::new(), |h, x| h.with_f64(x.abs())).bits();
-        let signed = all().fold(KeyedHash::new(), KeyedHash::with_f64).bits();
-        LengthKey { content, power: power.to_bits(), signed }
+        let all = lengths.map(|x| x * power).fold(self, KeyStart::with);
+        LengthKey { content: all.content.bits(), power: power.to_bits(), signed: all.signed.bits() }
     }
 }
 

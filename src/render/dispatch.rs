@@ -182,7 +182,7 @@ impl Work<'_> {
     /// One thread's share.
     fn trace<L: Lane>(&self, course: &Course<'_>) -> RayCounts {
         let recorder = match course {
-            Course::Film { record: true, .. } => Recorder::new(self.world.primitives.len()),
+            Course::Film { record: true, .. } => Recorder::new(self.world),
             _ => Recorder::off(),
         };
         let mut worker = TileWorker::<L>::new(self.world, self.options, self.cancel, recorder);

@@ -34,6 +34,7 @@ impl World {
         let lit = self.primitives.iter().any(|p| self.materials[p.material as usize].lit);
         let texels = self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>();
         let linear = self.maps.len();
+        let triangles = self.meshes.iter().map(|m| m.len()).sum();
         vec![
             by_shape("spheres", "", &|k| matches!(k, Kind::Sphere(_))),
             by_shape("planes", ", without bounds: tested for every tile", &|k| matches!(k, Kind::Plane)),
@@ -42,6 +43,7 @@ impl World {
             by_shape("cylinders and cones", "", &|k| matches!(k, Kind::Tube(_))),
             by_shape("tori", "", &|k| matches!(k, Kind::Ring(_))),
             by_shape("triangles", "", &|k| matches!(k, Kind::Triangle(_))),
+            by_shape("meshes", &format!(", {}", counted(triangles, "triangle")), &|k| matches!(k, Kind::Mesh(_))),
             feature("turned or stretched frames", None, linear > 0, counted(linear, "map")),
             feature("shadows", light, lit, counted(self.lights.len(), "light")),
             by_material("highlights", "one power for each light and hit", &|m| !m.specular.is_zero()),

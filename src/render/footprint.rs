@@ -7,6 +7,7 @@
 
 use super::bounds::{Bounds, larger};
 use super::cull::Cone;
+use super::world::{Owners, World};
 
 /// What the rays of one tile depended on.
 #[derive(Clone, Debug, Default)]
@@ -71,6 +72,7 @@ const MOST: usize = 24;
 #[derive(Debug, Default)]
 pub struct Recorder {
     on: bool,
+    owners: Owners,
     seen: Marks,
     shading: Marks,
     beams: Vec<Beam>,
@@ -83,9 +85,14 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Notes what tiles of a world of `primitives` do.
-    pub fn new(primitives: usize) -> Recorder {
-        Recorder { on: true, seen: Marks::new(primitives), shading: Marks::new(primitives), ..Recorder::default() }
+    /// Notes what tiles of `world` do.
+    pub fn new(world: &World) -> Recorder {
+        Recorder::of(world.owners.clone(), world.primitives.len())
+    }
+
+    fn of(owners: Owners, primitives: usize) -> Recorder {
+        let marks = || Marks::new(primitives);
+        Recorder { on: true, owners, seen: marks(), shading: marks(), ..Recorder::default() }
     }
 
     /// Notes nothing.
@@ -104,9 +111,9 @@ impl Recorder {
         (self.beams_so_far, self.lit_so_far) = (0, 0);
     }
 
-    /// Rays met these first.
+    /// Rays met these surfaces first.
     pub fn saw(&mut self, ids: impl Iterator<Item = u32>) {
-        ids.for_each(|id| self.seen.mark(id));
+        ids.for_each(|id| self.seen.mark(self.owners.of(id)));
     }
 
     /// A ray met nothing.
@@ -114,10 +121,10 @@ impl Recorder {
         self.background = true;
     }
 
-    /// A shadow ray was stopped or dimmed by this one.
+    /// A shadow ray was stopped or dimmed by this surface.
     #[cold]
     pub fn shaded(&mut self, id: u32) {
-        self.shading.mark(id);
+        self.shading.mark(self.owners.of(id));
     }
 
     /// A batch of mirrored or transmitted rays set out.
@@ -224,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_tile_leaves_nothing_to_the_next() {
-        let mut r = Recorder::new(4);
+        let mut r = Recorder::of(Owners::default(), 4);
         r.saw([2, 1, 2].into_iter());
         r.shaded(3);
         r.saw_background();

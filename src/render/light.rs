@@ -5,7 +5,7 @@ use super::bvh::{Leaves, Spread};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
 use super::ray::Own;
-use super::shape::Visit;
+use super::shape::{Mesh, Visit};
 use super::span::{least, stored};
 use super::surface_pattern::PatternFrame;
 use super::touch::ButAtTheEnd;
@@ -217,7 +217,16 @@ impl<L: Lane> Open<'_, L> {
                         touched: self.rays.touched,
                     };
                     let open = Open { mask: Mask::splat(true), rays: &rays };
-                    let mut ray = InTree { world, open, transparent, recorder };
+                    let wide = ShadowRays::<L> {
+                        source: L::splat(source[i].to_f64()),
+                        part: L::splat(part[i].to_f64()),
+                        outward: L::splat(outward[i].to_f64()),
+                        o: each3!(&o, x => L::splat(x[i].to_f64())),
+                        l: each3!(&l, x => L::splat(x[i].to_f64())),
+                        distance: L::splat(distance[i].to_f64()),
+                        touched: self.rays.touched,
+                    };
+                    let mut ray = InTree::<L> { world, open, wide: &wide, transparent, recorder };
                     let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&l, x => x[i].to_f64()));
                     world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, distance[i].to_f64(), &mut ray);
                     if !ray.open.mask.any() {
@@ -234,18 +243,52 @@ impl<L: Lane> Open<'_, L> {
 }
 
 /// A shadow ray on its way through the tree.
-struct InTree<'a, R: Lane> {
+struct InTree<'a, L: Lane> {
     world: &'a World,
-    open: Open<'a, R>,
+    open: Open<'a, L::One>,
+    /// The same in every lane: one ray against many triangles.
+    wide: &'a ShadowRays<'a, L>,
     transparent: &'a mut Vec<u32>,
     recorder: &'a mut Recorder,
 }
 
-impl<R: Lane> Leaves for InTree<'_, R> {
+impl<L: Lane> Leaves for InTree<'_, L> {
     #[inline(always)]
     fn test(&mut self, ids: &[u32]) -> f64 {
-        self.open.test_here(self.world, ids, self.transparent, self.recorder);
+        match self.world.mesh_of(ids) {
+            Some(mesh) if L::WIDTH > 1 && self.stops_light(ids) => {
+                for ids in ids.chunks(L::WIDTH) {
+                    self.test_triangles(mesh, ids);
+                }
+            }
+            _ => self.open.test_here(self.world, ids, self.transparent, self.recorder),
+        }
         if self.open.mask.any() { least(self.open.rays.distance) } else { -1.0 }
+    }
+}
+
+impl<L: Lane> InTree<'_, L> {
+    /// Whether nothing but a crossing is asked of triangles of one mesh.
+    #[inline(always)]
+    fn stops_light(&self, ids: &[u32]) -> bool {
+        let opaque = self.world.constant_transmission(ids[0]) == Some([0.0; 3]);
+        opaque && self.wide.touched.is_empty()
+    }
+
+    #[inline(always)]
+    fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
+        let rays = self.wide;
+        let mut met = Blocked { distance: rays.distance, blocked: L::Mask::splat(false) };
+        mesh.crossings_of_one(ids, (rays.o, rays.l), (rays.source, rays.part, rays.outward), &mut met);
+        let blocked = met.blocked.bits();
+        if blocked != 0 {
+            self.open.mask = Mask::splat(false);
+            if let Some(&id) = ids.get(blocked.trailing_zeros() as usize)
+                && self.recorder.is_on()
+            {
+                self.recorder.shaded(id);
+            }
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
 //! meet.
 
+mod assemble;
 pub mod batch;
 mod belt;
 pub mod bounds;
@@ -38,6 +39,7 @@ mod shade;
 pub mod shape;
 mod span;
 mod spawn;
+mod standing;
 mod surface_pattern;
 mod texture;
 mod tile;

@@ -4,7 +4,7 @@ use super::batch::{HitColumns, NONE, PADDING, RayBatch, load3};
 use super::bvh::{Leaves, Spread};
 use super::candidates::Candidates;
 use super::ray::Own;
-use super::shape::Visit;
+use super::shape::{Mesh, Visit};
 use super::span::{least, stored};
 use super::world::World;
 use crate::math::real::each3;
@@ -139,7 +139,15 @@ impl<L: Lane> Nearest<L> {
                     };
                     let best = Nearest { t: one(&t), id: one(&id), part: one(&part), current: L::One::zero() };
                     let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&d, x => x[i].to_f64()));
-                    let mut ray = InTree { world, start, best };
+                    let wide = Start::<L> {
+                        o: each3!(&o, x => L::splat(x[i].to_f64())),
+                        d: each3!(&d, x => L::splat(x[i].to_f64())),
+                        primitive: L::splat(from[0][i].to_f64()),
+                        part: L::splat(from[1][i].to_f64()),
+                        outward: L::splat(from[2][i].to_f64()),
+                        live: Mask::splat(true),
+                    };
+                    let mut ray = InTree::<L> { world, start, best, wide };
                     world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t[i].to_f64(), &mut ray);
                     ray.best.t.store(&mut t[i..]);
                     ray.best.id.store(&mut id[i..]);
@@ -152,17 +160,58 @@ impl<L: Lane> Nearest<L> {
 }
 
 /// A ray on its way through the tree.
-struct InTree<'w, R: Real> {
+struct InTree<'w, L: Lane> {
     world: &'w World,
-    start: Start<R>,
-    best: Nearest<R>,
+    start: Start<L::One>,
+    best: Nearest<L::One>,
+    /// The same in every lane: one ray against many triangles.
+    wide: Start<L>,
 }
 
-impl<R: Lane> Leaves for InTree<'_, R> {
+impl<L: Lane> Leaves for InTree<'_, L> {
     #[inline(always)]
     fn test(&mut self, ids: &[u32]) -> f64 {
-        self.best.test_here(self.world, ids, &self.start);
+        match self.world.mesh_of(ids) {
+            Some(mesh) if L::WIDTH > 1 => {
+                for ids in ids.chunks(L::WIDTH) {
+                    self.test_triangles(mesh, ids);
+                }
+            }
+            _ => self.best.test_here(self.world, ids, &self.start),
+        }
         least(self.best.t)
+    }
+}
+
+impl<L: Lane> InTree<'_, L> {
+    #[inline(always)]
+    fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
+        let ray = &self.wide;
+        let mut met = Met { t: L::zero(), valid: L::Mask::splat(false) };
+        mesh.crossings_of_one(ids, (ray.o, ray.d), (ray.primitive, ray.part, ray.outward), &mut met);
+        let mut rest = (met.valid & L::zero().lt(met.t) & met.t.le(L::splat(least(self.best.t)))).bits();
+        let t = stored(met.t);
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize % PADDING;
+            rest &= rest - 1;
+            if let Some(&id) = ids.get(i) {
+                self.best.current = L::One::splat(id as f64);
+                self.best.crossing(L::One::splat(t[i].to_f64()), L::One::zero(), Mask::splat(true));
+            }
+        }
+    }
+}
+
+/// What a ray meets of triangles: each lane of its own.
+struct Met<R: Real> {
+    t: R,
+    valid: R::Mask,
+}
+
+impl<R: Real> Visit<R> for Met<R> {
+    #[inline(always)]
+    fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
+        (self.t, self.valid) = (t, valid);
     }
 }
 

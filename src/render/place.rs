@@ -5,7 +5,7 @@ use super::bounds::{Bounds, larger};
 use super::shape::{Kind, Ring, Tube};
 use crate::math::affine::reciprocal_power;
 use crate::math::{Affine, Dd};
-use crate::scene::Shape;
+use crate::scene::{MeshId, Shape};
 use glam::DVec3;
 
 /// A shape in its frame, before it has a number.
@@ -28,6 +28,8 @@ pub enum Form {
     Framed(Kind),
     /// Corners in the world, normal and shading normals there.
     Triangle([[f64; 3]; 3], [f64; 3], Option<[[f64; 3]; 3]>),
+    /// The triangles of a file, which stand in the frame as they were made, and whether they look smooth.
+    Mesh(MeshId, bool),
 }
 
 /// Leads from lengths of a scaled frame back to those in which the shape was made. Faces keep their exact coordinates there: a
@@ -66,7 +68,7 @@ impl Placed {
         let faces = match (&self.rescale, &self.form) {
             (Some(rescale), _) => rescale.faces,
             (None, Form::Framed(kind)) => Rescale::new(1.0, kind).faces,
-            (None, Form::Triangle(..)) => [[(f64::NAN, f64::NAN); 2]; 3],
+            (None, Form::Triangle(..) | Form::Mesh(..)) => [[(f64::NAN, f64::NAN); 2]; 3],
         };
         faces.map(|across| across.map(|(_, made)| made))
     }
@@ -75,16 +77,19 @@ impl Placed {
 /// Relative size below which an entry of a map is the rounding error of a rotation: 512 roundings.
 pub const RESIDUE: f64 = 512.0 * f64::EPSILON;
 
-/// Puts `shape` into the world; a tetrahedron gives four triangles.
-pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
+/// How many primitives a shape is: a tetrahedron is four triangles.
+pub fn parts(shape: &Shape) -> usize {
+    if let Shape::Tetrahedron { .. } = shape { 4 } else { 1 }
+}
+
+/// Puts part number `part` of `shape` into the world.
+pub fn place(shape: &Shape, world_from_object: &Affine, part: usize) -> Placed {
     match shape {
-        Shape::Sphere { at, r } => vec![sphere(*at, *r, world_from_object)],
-        Shape::Plane { through, normal } => {
-            vec![framed(Kind::Plane, axis_frame(*through, *normal), None, world_from_object)]
-        }
+        Shape::Sphere { at, r } => sphere(*at, *r, world_from_object),
+        Shape::Plane { through, normal } => framed(Kind::Plane, axis_frame(*through, *normal), None, world_from_object),
         Shape::Disc { at, normal, r, hole } => {
             let kind = Kind::Disc { r: *r, hole: *hole };
-            vec![framed(kind, axis_frame(*at, *normal), Some([[0.0; 3], [*r, 0.0, *r]]), world_from_object)]
+            framed(kind, axis_frame(*at, *normal), Some([[0.0; 3], [*r, 0.0, *r]]), world_from_object)
         }
         Shape::Box { from, to } => {
             let half = ((*to - *from) * 0.5).to_array();
@@ -95,31 +100,31 @@ pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
             if let Form::Framed(Kind::Cuboid(half)) = placed.form {
                 placed.hang(world_from_object, *from, half);
             }
-            vec![placed]
+            placed
         }
-        Shape::Cylinder { from, to, r, caps } => vec![tube(*from, *to, *r, *r, *caps, world_from_object)],
-        Shape::Cone { from, to, r, top, caps } => vec![tube(*from, *to, *r, *top, *caps, world_from_object)],
+        Shape::Cylinder { from, to, r, caps } => tube(*from, *to, *r, *r, *caps, world_from_object),
+        Shape::Cone { from, to, r, top, caps } => tube(*from, *to, *r, *top, *caps, world_from_object),
         Shape::Torus { at, r, tube, axis } => {
             let out = r + tube;
             let kind = Kind::Ring(Ring::new(*r, *tube));
-            vec![framed(kind, axis_frame(*at, *axis), Some([[0.0; 3], [out, *tube, out]]), world_from_object)]
+            framed(kind, axis_frame(*at, *axis), Some([[0.0; 3], [out, *tube, out]]), world_from_object)
         }
-        Shape::Triangle { points, normals } => {
-            vec![triangle(**points, normals.as_deref().copied(), world_from_object)]
-        }
+        Shape::Triangle { points, normals } => triangle(**points, normals.as_deref().copied(), world_from_object),
         Shape::Tetrahedron { points } => {
             let [a, b, c, d] = &**points;
             // Corners of each face go round counter-clockwise seen from outside.
             let outward = (*b - *a).cross(*c - *a).dot(*d - *a) < 0.0;
-            let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
-            faces
-                .into_iter()
-                .map(|[p, q, r]| {
-                    let corners = if outward { [*p, *q, *r] } else { [*p, *r, *q] };
-                    triangle(corners, None, world_from_object)
-                })
-                .collect()
+            let [p, q, r] = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]][part];
+            let corners = if outward { [*p, *q, *r] } else { [*p, *r, *q] };
+            triangle(corners, None, world_from_object)
         }
+        Shape::Mesh { mesh, smooth } => Placed {
+            form: Form::Mesh(*mesh, *smooth),
+            world_from_local: *world_from_object,
+            made_from_local: Affine::IDENTITY,
+            rescale: None,
+            extent: None,
+        },
     }
 }
 
@@ -129,7 +134,7 @@ fn sphere(at: DVec3, r: f64, world_from_object: &Affine) -> Placed {
         return framed(Kind::Sphere(r), centre, Some([[0.0; 3], [r; 3]]), world_from_object);
     };
     // A turned sphere is a sphere: only its patterns turn.
-    let shift = world_from_object.compose(&centre).shift;
+    let shift = world_from_object.apply_dd(centre.shift);
     let turn = Affine { shift: [Dd::default(); 3], ..*world_from_object };
     let back = || turn.inverse().unwrap_or(Affine::IDENTITY);
     Placed {
@@ -174,7 +179,10 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
         };
     };
     // Sizes take the scale, so that the frame is a rotation, often none at all.
-    let unit = Affine::scaling(DVec3::splat(s)).inverse().unwrap_or(Affine::IDENTITY);
+    let unit = match s {
+        1.0 => Affine::IDENTITY,
+        _ => Affine::scaling(DVec3::splat(s)).inverse().unwrap_or(Affine::IDENTITY),
+    };
     let grow = |v: [f64; 3]| v.map(|x| x * s);
     let rescale = (s != 1.0).then(|| Rescale::new(s, &kind));
     let kind = match kind {
@@ -184,7 +192,7 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
         Kind::Cuboid(half) => Kind::Cuboid(grow(half)),
         Kind::Tube(t) => Kind::Tube(Tube { radius: t.radius * s, bottom: t.bottom * s, top: t.top * s, ..t }),
         Kind::Ring(ring) => Kind::Ring(Ring::new(ring.r / ring.scale * s, ring.tube / ring.scale * s)),
-        Kind::Triangle(_) => kind,
+        Kind::Triangle(_) | Kind::Mesh(_) => kind,
     };
     Placed {
         form: Form::Framed(kind),
@@ -198,25 +206,40 @@ fn framed(kind: Kind, object_from_local: Affine, extent: Option<[[f64; 3]; 2]>, 
 fn triangle(points: [DVec3; 3], normals: Option<[DVec3; 3]>, world: &Affine) -> Placed {
     let v = points.map(|p| world.apply(p).to_array());
     let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
-    let back = world.inverse().unwrap_or(Affine::IDENTITY).linear_f64();
-    // Normals go by the inverse transposed, so a mirrored shape keeps its outside.
-    let to_world = |n: DVec3| {
-        let n = unit(n).to_array();
-        unit(DVec3::from_array(std::array::from_fn(|c| (0..3).map(|r| back[r][c] * n[r]).sum()))).to_array()
-    };
+    let map = normals_map(world);
+    let to_world = |n: DVec3| normal_to_world(&map, n);
     let mut made = Affine::translation(points[0]);
     for (r, (x, y)) in e1.to_array().into_iter().zip(e2.to_array()).enumerate() {
         made.linear[r] = [Dd::new(x), Dd::new(0.0), Dd::new(y)];
     }
-    let scale = larger(largest(e1), largest(e2));
-    let n = (e1 / scale).cross(e2 / scale);
     Placed {
-        form: Form::Triangle(v, to_world(n), normals.map(|ns| ns.map(to_world))),
+        form: Form::Triangle(v, to_world(face_normal(points)), normals.map(|ns| ns.map(to_world))),
         world_from_local: Affine::IDENTITY,
         made_from_local: made,
         rescale: None,
         extent: None,
     }
+}
+
+/// A direction straight out of a triangle, on the side from which its corners go round counter-clockwise.
+pub fn face_normal(points: [DVec3; 3]) -> DVec3 {
+    let (e1, e2) = (points[1] - points[0], points[2] - points[0]);
+    let scale = larger(largest(e1), largest(e2));
+    (e1 / scale).cross(e2 / scale)
+}
+
+/// What takes normals to the world, but for their length: they go by the inverse transposed, so a mirrored shape keeps its
+/// outside.
+pub fn normals_map(world: &Affine) -> [[f64; 3]; 3] {
+    let back = world.inverse().unwrap_or(Affine::IDENTITY).linear_f64();
+    std::array::from_fn(|r| std::array::from_fn(|c| back[c][r]))
+}
+
+/// The direction `n`, of any length but 0, by a map for normals; of unit length.
+#[inline]
+pub fn normal_to_world(map: &[[f64; 3]; 3], n: DVec3) -> [f64; 3] {
+    let n = unit(n).to_array();
+    unit(DVec3::from_array(map.map(|row| (0..3).map(|i| row[i] * n[i]).sum()))).to_array()
 }
 
 /// The box of a framed shape's extent in the world.
@@ -229,6 +252,9 @@ pub fn world_bounds(extent: [[f64; 3]; 2], world_from_local: &Affine) -> Bounds 
 
 /// The factor by which a map scales all lengths, or `None` where it stretches.
 fn similarity(map: &Affine) -> Option<f64> {
+    if map.is_translation() {
+        return Some(1.0);
+    }
     let m = map.linear_f64();
     let column = |a: usize, b: usize| (0..3).map(|r| m[r][a] * m[r][b]).sum::<f64>();
     let s2 = column(0, 0);
@@ -319,7 +345,7 @@ mod tests {
     #[test]
     fn scaling_goes_into_the_size_and_turning_into_the_frame() {
         let world = Affine::rotation(2, 90.0).compose(&Affine::scaling(DVec3::splat(3.0)));
-        let placed = &place(&Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Y, r: 2.0, caps: true }, &world)[0];
+        let placed = place(&Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Y, r: 2.0, caps: true }, &world, 0);
         let Form::Framed(Kind::Tube(t)) = &placed.form else { panic!() };
         assert_eq!((t.radius, t.top), (6.0, 3.0));
         assert_eq!(placed.rescale.unwrap().faces[1], [(0.0, 0.0), (3.0, 1.0)]);
@@ -335,9 +361,9 @@ mod tests {
             let glass = Shape::Box { from: DVec3::new(-0.42, 0.0, -0.42), to: DVec3::new(0.42, 0.7, 0.42) };
             let cone = Shape::Cone { from: DVec3::ZERO, to: DVec3::Y * 0.7, r: 0.3, top: 0.0, caps: true };
             let level =
-                place(&Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, &world)[0].world_from_local.shift[1];
+                place(&Shape::Plane { through: DVec3::ZERO, normal: DVec3::Y }, &world, 0).world_from_local.shift[1];
             for shape in [glass, cone] {
-                let placed = &place(&shape, &turned)[0];
+                let placed = place(&shape, &turned, 0);
                 assert_eq!(placed.world_from_local.linear_f64()[1], [0.0, 1.0, 0.0], "{s}");
                 let lowest = match &placed.form {
                     Form::Framed(Kind::Cuboid(half)) => -half[1],
@@ -354,7 +380,8 @@ mod tests {
     fn tetrahedron_faces_look_outwards_whatever_the_order_of_corners() {
         let p = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         for points in [p, [p[1], p[0], p[2], p[3]]] {
-            for face in place(&Shape::Tetrahedron { points: Box::new(points) }, &Affine::IDENTITY) {
+            for part in 0..4 {
+                let face = place(&Shape::Tetrahedron { points }, &Affine::IDENTITY, part);
                 let Form::Triangle(v, n, _) = face.form else { panic!() };
                 let from_middle = DVec3::from_array(v[0]) - DVec3::splat(0.2);
                 assert!(from_middle.dot(DVec3::from_array(n)) > 0.0);

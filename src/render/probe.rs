@@ -54,7 +54,7 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
         occlusion(world, &everything, &rays, Bool(true), &mut scratch, &mut Recorder::off())
     };
     let lights = world.lights.iter().map(|l| (l.node, arriving(l))).collect();
-    let (node, material) = world.origins[id as usize];
+    let (node, material) = world.origin(id);
     let point: [f64; 3] = std::array::from_fn(|i| surface.p[i] + world.eye[i]);
     let distance = t * dot(d, d).sqrt();
     Some(Probe { node, material, point, normal, distance, color, lights })

@@ -29,7 +29,7 @@ impl Search {
     pub fn through(world: &World, rays: u64, lot: u64) -> Search {
         let planes: Vec<u32> = world.unbounded.iter().map(|p| p.id).collect();
         let by_tree = Candidates { ids: planes, tree: true };
-        let by_list = Candidates { ids: (0..world.primitives.len() as u32).collect(), tree: false };
+        let by_list = Candidates { ids: (0..world.surface_count()).collect(), tree: false };
         // Their own, for the tree's are a little wider: a ray is to run along the very face.
         let boxes: Vec<Bounds> = world.bvh.leaves().map(|(id, b)| box_of(world, id).unwrap_or(b)).collect();
         let mut search = Search::default();
@@ -108,7 +108,7 @@ fn box_of(world: &World, id: u32) -> Option<Bounds> {
             Some([[0.0; 3], [far, tube, far]])
         }
         Kind::Triangle(i) => return Some(Bounds::of_points(world.triangles.get(*i as usize)?.v)),
-        Kind::Plane => None,
+        Kind::Plane | Kind::Mesh(_) => None,
     };
     let ([centre, half], Axes::Cyclic(_)) = (extent?, primitive.frame.axes) else { return None };
     let place = |v: [f64; 3]| primitive.frame.vector_to_world(&world.maps, v);

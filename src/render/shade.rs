@@ -12,12 +12,12 @@ use super::optics::mirrored;
 use super::pattern::{PatternPoint, Rows};
 use super::place::RESIDUE;
 use super::run::LaneGroup;
-use super::shape::Surface;
 use super::shape::primitive::spawn_point;
+use super::shape::{Kind, Mesh, Surface};
 use super::span::Span;
 use super::spawn::{Children, Leaving};
 use super::surface_pattern::{PatternFrame, bumped};
-use super::world::{PointLight, World};
+use super::world::World;
 use crate::math::fun;
 use crate::math::real::{Mask, dot, minus, scaled, select3, splat3, three};
 use crate::math::{Elem, Lane};
@@ -76,8 +76,12 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
     let primitive = world.primitive(hits.flock);
     let surfacing = world.surfacing(hits.flock);
     let frame = PatternFrame::new(world, primitive, surfacing, &mut s.spaces);
-    let run =
-        RunOfHits { world, surfacing, frame, bent: surfacing.bump.is_some() || primitive.kind.may_be_smooth(), hits };
+    let bent = surfacing.bump.is_some() || primitive.kind.may_be_smooth();
+    let mesh = match primitive.kind {
+        Kind::Mesh(i) => world.meshes.get(i as usize),
+        _ => None,
+    };
+    let run = RunOfHits { world, surfacing, frame, bent, hits, mesh };
     let points = run.surfaces::<L, AT_EYE>(s);
     if surfacing.lit {
         if s.recorder.is_on() {
@@ -96,6 +100,8 @@ struct RunOfHits<'a, E: Elem> {
     /// Whether shading normals may differ from geometric ones.
     bent: bool,
     hits: Hits<'a, E>,
+    /// The mesh, where that is what was met.
+    mesh: Option<&'a Mesh>,
 }
 
 impl<E: Elem> RunOfHits<'_, E> {
@@ -110,16 +116,23 @@ impl<E: Elem> RunOfHits<'_, E> {
             let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
             let at = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
             let ids = L::load(&hits.id[g..]);
-            // Mostly one surface: others one after another.
-            let id = hits.id[g + group.bits.trailing_zeros() as usize];
-            let mut surface = self.world.surface::<L, AT_EYE>(id.to_f64() as u32, (o, d), at);
-            let mut rest = group.bits & !ids.same(L::splat(id.to_f64())).bits();
-            while rest != 0 {
-                let id = hits.id[g + rest.trailing_zeros() as usize].to_f64();
-                let here = ids.same(L::splat(id));
-                surface = surface_of_another::<L>(self.world, id as u32, (o, d), at, here, surface);
-                rest &= !here.bits();
-            }
+            let live = L::Mask::from_bits(group.bits);
+            let surface = match self.mesh {
+                Some(mesh) => surface_of_mesh(mesh, L::select(live, ids, L::splat(mesh.first as f64)), (o, d)),
+                None => {
+                    // Mostly one surface: others one after another.
+                    let id = hits.id[g + group.bits.trailing_zeros() as usize];
+                    let mut surface = self.world.surface::<L, AT_EYE>(id.to_f64() as u32, (o, d), at);
+                    let mut rest = group.bits & !ids.same(L::splat(id.to_f64())).bits();
+                    while rest != 0 {
+                        let id = hits.id[g + rest.trailing_zeros() as usize].to_f64();
+                        let here = ids.same(L::splat(id));
+                        surface = surface_of_another::<L>(self.world, id as u32, (o, d), at, here, surface);
+                        rest &= !here.bits();
+                    }
+                    surface
+                }
+            };
             let inside = L::zero().lt(dot(surface.n, d));
             let faced = FacedBy { inside };
             store3(&mut s.p, g, surface.p);
@@ -136,7 +149,7 @@ impl<E: Elem> RunOfHits<'_, E> {
             }
             surface.offset.store(&mut s.offset[g..]);
             L::select(inside, L::one(), L::zero()).store(&mut s.inside[g..]);
-            points.hold(L::Mask::from_bits(group.bits), surface.p);
+            points.hold(live, surface.p);
         }
         points.bounds()
     }
@@ -238,8 +251,9 @@ impl<E: Elem> RunOfHits<'_, E> {
         let mut mirror: Option<([L; 3], L)> = None;
         for (number, light) in self.world.lights.iter().enumerate() {
             let (at, color): ([L; 3], [L; 3]) = (splat3(light.at), splat3(light.color));
-            // A light in this very surface grazes it: what rounding makes of the right angle doesn't count.
-            let least = L::splat(if self.is_touched_by(light) { RESIDUE } else { 0.0 });
+            // A light in this very surface grazes it: what rounding makes of the right angle doesn't count. (Such surfaces are
+            // runs of their own.)
+            let least = L::splat(if self.world.touches(light, self.hits.flock) { RESIDUE } else { 0.0 });
             let to = minus(at, o);
             // Most of what faces away does so by far.
             let size = to[0].abs() + to[1].abs() + to[2].abs();
@@ -278,12 +292,6 @@ impl<E: Elem> RunOfHits<'_, E> {
         }
     }
 
-    /// Whether the light lies on the surface that was met; such surfaces are runs of their own.
-    #[inline(always)]
-    fn is_touched_by(&self, light: &PointLight) -> bool {
-        !light.touched.is_empty() && light.touched.contains(&self.hits.flock)
-    }
-
     /// The value of a slot.
     #[inline(always)]
     fn slot<L: Lane<Elem = E>>(&self, slot: Slot, hit: &LitHits<L>, spaces: &[Rows]) -> [L; 3] {
@@ -319,6 +327,15 @@ impl<M: Mask> FacedBy<M> {
     fn face<L: Lane<Mask = M>>(&self, n: [L; 3]) -> [L; 3] {
         select3(self.inside, [-n[0], -n[1], -n[2]], n)
     }
+}
+
+/// The surfaces where rays meet triangles of `mesh`, each lane its own; in a function of its own, for it is large.
+#[inline(always)]
+fn surface_of_mesh<L: Lane>(mesh: &Mesh, ids: L, ray: ([L; 3], [L; 3])) -> Surface<L> {
+    L::vectorize(
+        #[inline(always)]
+        || mesh.surfaces(ids - L::splat(mesh.first as f64), ray),
+    )
 }
 
 /// `surface`, but that of `id` where `here`; in a function of its own, for kernels are large.

@@ -22,9 +22,7 @@ pub fn neighbourhood(light: [f64; 3]) -> Bounds {
 pub fn lies_on(primitive: &Primitive, tables: Tables<'_>, point: [f64; 3]) -> bool {
     if let Kind::Triangle(i) = primitive.kind {
         let tri = &tables.triangles[i as usize];
-        let size = tri.v.iter().flatten().chain(&point).map(|x| x.abs()).fold(0.0, larger);
-        // Beside the triangle, but in its plane, no ray to the light crosses it.
-        return dot(tri.n, minus(point, tri.v[0])).abs() <= NEAR * size;
+        return lies_on_triangle(tri.v, tri.n, point);
     }
     let p = primitive.frame.localize::<f64, false>(tables.maps, point, [0.0; 3]).o;
     let stretch = match primitive.frame.axes {
@@ -56,11 +54,18 @@ pub fn lies_on(primitive: &Primitive, tables: Tables<'_>, point: [f64; 3]) -> bo
             let w = rho - r;
             ((w * w + p[1] * p[1]).sqrt() - tube).abs() <= near(r)
         }
-        Kind::Triangle(_) => false,
+        Kind::Triangle(_) | Kind::Mesh(_) => false,
     }
 }
 
-/// Shows another visitor all crossings, or all but the one nearest to the end of the rays.
+/// Whether the point lies in the plane of the triangle with the corners `v` and the normal `n`. Beside the triangle, but in its
+/// plane, no ray to the light crosses it.
+pub fn lies_on_triangle(v: [[f64; 3]; 3], n: [f64; 3], point: [f64; 3]) -> bool {
+    let size = v.iter().flatten().chain(&point).map(|x| x.abs()).fold(0.0, larger);
+    dot(n, minus(point, v[0])).abs() <= NEAR * size
+}
+
+/// Shows another visitor all crossings but the one nearest to the end of the rays.
 pub struct ButAtTheEnd<'v, R: Real, V> {
     end: R,
     hold: bool,

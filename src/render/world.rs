@@ -7,24 +7,17 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
-use super::census::{PrimitiveKey, same_geometry};
-use super::digest::{LengthKey, MaterialDigest, material_digests};
-use super::frame::Frame;
-use super::material::{MaterialCompiler, Slot, Surfacing};
+use super::frame::LinearMap;
+use super::material::{Slot, Surfacing};
 use super::pattern::PatternTable;
-use super::place::{Form, Placed, Rescale, place, world_bounds};
+use super::place::Rescale;
 use super::ray::Own;
 use super::shape::primitive::Tables;
-use super::shape::{Kind, Primitive, Surface, TriangleData, Visit};
-use super::touch::{lies_on, neighbourhood};
-use crate::math::real::three;
+use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
+use super::touch::{lies_on, lies_on_triangle, neighbourhood};
 use crate::math::{Affine, Dd, Real};
-use crate::render::frame::LinearMap;
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
-use crate::scene::{Camera, Instance, MaterialId, NodeId, NodeKind, Scene};
-use glam::DVec3;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use crate::scene::{MaterialId, NodeId};
 
 /// The scene as the tracer sees it.
 pub struct World {
@@ -33,6 +26,8 @@ pub struct World {
     pub(super) origins: Vec<(NodeId, MaterialId)>,
     pub(super) maps: Vec<LinearMap>,
     pub(super) triangles: Vec<TriangleData>,
+    pub(super) meshes: Vec<Mesh>,
+    pub(super) owners: Owners,
     pub(super) spaces: Vec<MadeSpace>,
     pub(super) unbounded: Vec<Unbounded>,
     /// By primitive; see [`World::flock`].
@@ -48,12 +43,35 @@ pub struct World {
     pub(super) ambient: [f64; 3],
 }
 
+/// Which primitive a surface belongs to: with numbers beyond those of primitives, triangles belong to their mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Owners {
+    /// How many primitives there are.
+    pub(super) primitives: u32,
+    /// The first triangle of each mesh, ascending, and the primitive that it is.
+    pub(super) meshes: Vec<(u32, u32)>,
+}
+
+impl Owners {
+    /// The primitive that surface `id` belongs to.
+    #[inline(always)]
+    pub fn of(&self, id: u32) -> u32 {
+        if id < self.primitives || self.meshes.is_empty() { id } else { self.meshes[self.mesh(id)].1 }
+    }
+
+    /// The number of the mesh that surface `id`, a triangle, belongs to.
+    #[inline]
+    fn mesh(&self, id: u32) -> usize {
+        self.meshes.partition_point(|m| m.0 <= id).saturating_sub(1)
+    }
+}
+
 /// The way from a primitive's frame to the space in which its shape was made.
 pub(super) struct MadeSpace {
     pub(super) made_from_local: Affine,
-    pub(super) rescale: Option<Rescale>,
+    pub(super) rescale: Option<Box<Rescale>>,
     /// Only where a picture or a bump asks.
-    pub(super) detail: Option<MadeDetail>,
+    pub(super) detail: Option<Box<MadeDetail>>,
 }
 
 /// What pictures and bumps need of a shape.
@@ -83,14 +101,6 @@ pub(super) struct PointLight {
     pub(super) node: NodeId,
 }
 
-/// A primitive with what it is numbered by.
-struct Entry {
-    key: PrimitiveKey,
-    placed: Placed,
-    instance: Instance,
-    made: Made,
-}
-
 /// How a shape's own space lies.
 pub(super) struct Made {
     pub(super) world_from_object: Affine,
@@ -99,173 +109,7 @@ pub(super) struct Made {
 }
 
 impl World {
-    /// Prepares `scene` as seen by `camera`.
-    pub fn build(scene: &Scene, camera: &Camera) -> World {
-        match World::build_keyed(scene, camera, None, &AtomicBool::new(false)) {
-            Some((world, _)) => world,
-            None => unreachable!("nothing cancels it"),
-        }
-    }
-
-    /// Prepares `scene` as seen by `camera`, and says what each primitive is known by; `None` where `cancel` was set
-    /// meanwhile. The tree of the world `before`, with its keys, goes on living where little changed.
-    pub(super) fn build_keyed(
-        scene: &Scene,
-        camera: &Camera,
-        before: Option<(&World, &[PrimitiveKey])>,
-        cancel: &AtomicBool,
-    ) -> Option<(World, Vec<PrimitiveKey>)> {
-        let go_on = || if cancel.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        let to_camera = Affine::translation(-camera.from);
-        let (mut shapes, mut lights) = (Vec::new(), Vec::new());
-        // From the camera down: what moves both scene and camera cancels first, exactly.
-        let visited = scene.try_for_each_instance_from(&to_camera, |i| {
-            match &scene.node(i.node).kind {
-                NodeKind::Light(light) => {
-                    let at = i.world_from_object.apply(light.at).to_array();
-                    let color = (light.color * light.power).0;
-                    if color != [0.0; 3] {
-                        lights.push(PointLight { at, color, touched: Box::default(), node: i.node });
-                    }
-                }
-                NodeKind::Shape(_) => shapes.push(i),
-                NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
-            }
-            go_on()
-        });
-        if visited.is_break() {
-            return None;
-        }
-        lights.sort_by_cached_key(|l| LengthKey::new(l.color.into_iter(), l.at.into_iter()));
-
-        let mut world = World {
-            primitives: Vec::new(),
-            origins: Vec::new(),
-            maps: Vec::new(),
-            triangles: Vec::new(),
-            spaces: Vec::new(),
-            unbounded: Vec::new(),
-            flocks: Vec::new(),
-            bvh: Bvh::default(),
-            materials: Vec::new(),
-            patterns: PatternTable::default(),
-            lights,
-            camera: CameraFrame::new(camera),
-            eye: camera.from.to_array(),
-            background: scene.background.0,
-            ambient: scene.ambient.0,
-        };
-        let digests = material_digests(scene);
-        let numbers = world.compile_materials(scene, &shapes, &digests);
-        let mut entries = Vec::with_capacity(shapes.len());
-        for instance in shapes {
-            let NodeKind::Shape(shape) = &scene.node(instance.node).kind else { continue };
-            if go_on().is_break() {
-                return None;
-            }
-            let world_from_object = instance.world_from_object;
-            for placed in place(shape, &world_from_object) {
-                let (centre, half_height) = middle(shape);
-                let made = Made { world_from_object, centre, half_height };
-                let material = instance.material.0 as usize;
-                let surfacing = &world.materials[numbers[material] as usize];
-                let key = PrimitiveKey::new(&placed, &made, digests[material], surfacing);
-                entries.push(Entry { key, placed, instance: instance.clone(), made });
-            }
-        }
-        // Entries are large: their keys and numbers are sorted, and they stay where they are.
-        let mut order: Vec<(PrimitiveKey, u32)> = entries.iter().zip(0..).map(|(e, i)| (e.key, i)).collect();
-        order.sort_unstable();
-        let keys: Vec<PrimitiveKey> = order.iter().map(|o| o.0).collect();
-        let mut bounded = Vec::with_capacity(entries.len());
-        for (_, i) in order {
-            world.add(&entries[i as usize], &numbers, &mut bounded);
-            if go_on().is_break() {
-                return None;
-            }
-        }
-        // Boxes are relative to the camera's place.
-        let before = before.filter(|(old, _)| old.eye == world.eye);
-        world.bvh = match before.and_then(|b| grafted(b, &keys, &bounded)) {
-            Some(tree) => tree,
-            None => Bvh::build_unless(bounded, u32::MAX, cancel)?,
-        };
-        if go_on().is_break() {
-            return None;
-        }
-        world.find_touched_surfaces();
-        world.find_flocks();
-        Some((world, keys))
-    }
-
-    /// Compiles the materials that shapes wear; gives each scene material its number here. They are compiled in the order of
-    /// their content: which patterns get a space of their own, where there are too many, isn't left to the text.
-    fn compile_materials(&mut self, scene: &Scene, shapes: &[Instance], digests: &[MaterialDigest]) -> Vec<u32> {
-        let mut worn: Vec<usize> = Vec::new();
-        let mut numbers = vec![u32::MAX; scene.materials.len()];
-        for i in shapes {
-            let number = &mut numbers[i.material.0 as usize];
-            if *number == u32::MAX {
-                *number = 0;
-                worn.push(i.material.0 as usize);
-            }
-        }
-        worn.sort_by_key(|&m| digests[m].all);
-        let mut compiler = MaterialCompiler::new(scene);
-        for m in worn {
-            numbers[m] = self.materials.len() as u32;
-            self.materials.push(compiler.compile(&scene.materials[m], !self.lights.is_empty()));
-        }
-        self.patterns = compiler.finish();
-        numbers
-    }
-
-    fn add(&mut self, entry: &Entry, numbers: &[u32], bounded: &mut Vec<(u32, Bounds)>) {
-        let Entry { placed, instance, made, .. } = entry;
-        let id = self.primitives.len() as u32;
-        let material = numbers[instance.material.0 as usize];
-        let surfacing = &self.materials[material as usize];
-        let mut space = Primitive::NO_SPACE;
-        if surfacing.patterned {
-            space = self.spaces.len() as u32;
-            let detail = (surfacing.pictured || surfacing.bump.is_some()).then(|| {
-                let back = made.world_from_object.inverse().unwrap_or(Affine::IDENTITY);
-                MadeDetail {
-                    made_normal_from_world: transposed(&made.world_from_object),
-                    world_normal_from_made: transposed(&back),
-                    from_centre: three!(i => (placed.made_from_local.shift[i] - made.centre[i]).round()),
-                    half_height: made.half_height,
-                }
-            });
-            self.spaces.push(MadeSpace { made_from_local: placed.made_from_local, rescale: placed.rescale, detail });
-        }
-        let maps = &mut self.maps;
-        let frame = Frame::new(&placed.world_from_local, |m| {
-            maps.push(m);
-            maps.len() as u32 - 1
-        });
-        let kind = match placed.form {
-            Form::Framed(kind) => kind,
-            Form::Triangle(v, n, shading) => {
-                self.triangles.push(TriangleData { v, n, shading });
-                bounded.push((id, Bounds::of_points(v)));
-                Kind::Triangle(self.triangles.len() as u32 - 1)
-            }
-        };
-        match placed.extent {
-            Some(extent) => bounded.push((id, world_bounds(extent, &placed.world_from_local))),
-            None if matches!(kind, Kind::Plane) => {
-                let n = frame.normal_to_world(&self.maps, [0.0, 1.0, 0.0]);
-                let offset = (0..3).map(|i| n[i] * frame.centre[i]).sum();
-                self.unbounded.push(Unbounded { id, n, offset });
-            }
-            None => {}
-        }
-        self.primitives.push(Primitive { kind, frame, material, space });
-        self.origins.push((instance.node, instance.material));
-    }
-
-    fn find_touched_surfaces(&mut self) {
+    pub(super) fn find_touched_surfaces(&mut self) {
         let mut lights = std::mem::take(&mut self.lights);
         for light in &mut lights {
             let around = neighbourhood(light.at);
@@ -277,13 +121,25 @@ impl World {
                     true
                 },
             );
-            near.retain(|&id| lies_on(&self.primitives[id as usize], self.tables(), light.at));
+            near.retain(|&id| match self.primitives.get(id as usize) {
+                Some(primitive) => lies_on(primitive, self.tables(), light.at),
+                None => {
+                    let (mesh, k) = self.triangle(id);
+                    lies_on_triangle(mesh.corners(k), mesh.normal(k), light.at)
+                }
+            });
             light.touched = near.into();
         }
         self.lights = lights;
     }
 
-    /// All surfaces, by number.
+    /// How many surfaces there are: primitives by number, then the triangles of meshes. A mesh itself is a primitive that no
+    /// ray meets.
+    pub fn surface_count(&self) -> u32 {
+        self.meshes.last().map_or(self.owners.primitives, |m| m.first + m.len() as u32)
+    }
+
+    /// All primitives, by number.
     pub fn primitives(&self) -> &[Primitive] {
         &self.primitives
     }
@@ -302,7 +158,31 @@ impl World {
     /// The primitive that surface `id` belongs to.
     #[inline(always)]
     pub(super) fn primitive(&self, id: u32) -> &Primitive {
-        &self.primitives[id as usize]
+        &self.primitives[self.owners.of(id) as usize]
+    }
+
+    /// Node and material of surface `id` in the scene.
+    pub(super) fn origin(&self, id: u32) -> (NodeId, MaterialId) {
+        self.origins[self.owners.of(id) as usize]
+    }
+
+    /// The mesh that surface `id` is a triangle of, and which. A number beyond all primitives is that of a triangle.
+    #[inline]
+    pub(super) fn triangle(&self, id: u32) -> (&Mesh, u32) {
+        let mesh = &self.meshes[self.owners.mesh(id)];
+        (mesh, id - mesh.first)
+    }
+
+    /// The mesh that all of `ids` are triangles of.
+    #[inline(always)]
+    pub(super) fn mesh_of(&self, ids: &[u32]) -> Option<&Mesh> {
+        let first = *ids.first()?;
+        if (first as usize) < self.primitives.len() {
+            return None;
+        }
+        let (mesh, _) = self.triangle(first);
+        let own = mesh.first..mesh.first + mesh.len() as u32;
+        ids.iter().all(|id| own.contains(id)).then_some(mesh)
     }
 
     /// Calls `visit` for every crossing of lines with surface `id`; see [`Primitive::crossings`].
@@ -314,7 +194,11 @@ impl World {
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
-        self.primitive(id).crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+        if let Some(primitive) = self.primitives.get(id as usize) {
+            return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+        }
+        let (mesh, k) = self.triangle(id);
+        mesh.crossing(k, (o, d), own, visit);
     }
 
     /// Surface `id` where rays are at `t`, on `part`.
@@ -325,7 +209,11 @@ impl World {
         (o, d): ([R; 3], [R; 3]),
         (t, part): (R, R),
     ) -> Surface<R> {
-        self.primitive(id).surface::<R, AT_EYE>(self.tables(), o, d, t, part)
+        if let Some(primitive) = self.primitives.get(id as usize) {
+            return primitive.surface::<R, AT_EYE>(self.tables(), o, d, t, part);
+        }
+        let (mesh, k) = self.triangle(id);
+        mesh.surface(k, (o, d))
     }
 
     /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
@@ -347,6 +235,11 @@ impl World {
     /// else. See [`range`](crate::scene::range).
     pub fn beyond_f32(&self) -> Option<NodeId> {
         let holds = |x: f64| x == 0.0 || (SMALLEST_F32..=LARGEST_F32).contains(&x.abs());
+        let edges_hold = |[a, b, c]: [[f64; 3]; 3]| {
+            let edge = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).abs()).fold(0.0, larger);
+            let near = [a, b, c].as_flattened().iter().all(|x| x.abs() <= LARGEST_F32);
+            near && holds(edge(a, b)) && holds(edge(a, c))
+        };
         let fits = |p: &Primitive| match &p.kind {
             Kind::Sphere(r) => holds(*r),
             Kind::Plane => true,
@@ -354,10 +247,10 @@ impl World {
             Kind::Cuboid(half) => half.iter().all(|h| holds(*h)),
             Kind::Tube(t) => [t.radius, t.bottom, t.top].into_iter().all(holds),
             Kind::Ring(ring) => holds(ring.tube / ring.scale),
-            Kind::Triangle(i) => {
-                let [a, b, c] = self.triangles[*i as usize].v;
-                let edge = |p: [f64; 3], q: [f64; 3]| (0..3).map(|i| (p[i] - q[i]).abs()).fold(0.0, larger);
-                holds(edge(a, b)) && holds(edge(a, c))
+            Kind::Triangle(i) => edges_hold(self.triangles[*i as usize].v),
+            Kind::Mesh(i) => {
+                let mesh = &self.meshes[*i as usize];
+                (0..mesh.len() as u32).all(|k| edges_hold(mesh.corners(k)))
             }
         };
         let near = |p: &Primitive| p.frame.centre.iter().all(|x| x.abs() <= LARGEST_F32);
@@ -370,6 +263,7 @@ impl World {
         self.primitives.len() * (size_of::<Primitive>() + size_of::<(NodeId, MaterialId)>())
             + self.maps.len() * size_of::<LinearMap>()
             + self.triangles.len() * size_of::<TriangleData>()
+            + self.meshes.iter().map(|m| m.memory_bytes()).sum::<usize>()
             + self.spaces.len() * size_of::<MadeSpace>()
             + self.bvh.memory_bytes()
             + self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>()
@@ -383,45 +277,4 @@ impl World {
             Slot::Pattern(_) => None,
         }
     }
-}
-
-/// The old world's tree, with what became of its primitives.
-fn grafted(
-    (old, old_keys): (&World, &[PrimitiveKey]),
-    keys: &[PrimitiveKey],
-    bounded: &[(u32, Bounds)],
-) -> Option<Bvh> {
-    let renumbered = same_geometry(old_keys, keys);
-    let mut is_new = vec![true; keys.len()];
-    renumbered.iter().filter(|&&id| id != u32::MAX).for_each(|&id| is_new[id as usize] = false);
-    old.bvh.grafted(&renumbered, bounded.iter().filter(|b| is_new[b.0 as usize]).copied().collect())
-}
-
-/// Centre and half height of a shape in the space in which it is made; a plane's point and ½.
-fn middle(shape: &crate::scene::Shape) -> ([Dd; 3], f64) {
-    use crate::scene::Shape::*;
-    let exactly = |p: &DVec3| p.to_array().map(Dd::new);
-    let of_points = |points: &[DVec3]| {
-        let (lo, hi) = points.iter().fold((points[0], points[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-        // The middle of two numbers far out may lie between two numbers.
-        let half = ((hi - lo) * 0.5).to_array();
-        (three!(i => exactly(&lo)[i] + Dd::new(half[i])), half[1])
-    };
-    let (centre, half) = match shape {
-        Sphere { at, r } => (exactly(at), *r),
-        Plane { through, .. } => (exactly(through), 0.5),
-        Box { from, to } => of_points(&[*from, *to]),
-        Disc { at, r, .. } => (exactly(at), *r),
-        Cylinder { from, to, .. } | Cone { from, to, .. } => of_points(&[*from, *to]),
-        Torus { at, tube, .. } => (exactly(at), *tube),
-        Triangle { points, .. } => of_points(&points[..]),
-        Tetrahedron { points } => of_points(&points[..]),
-    };
-    (centre, if half > 0.0 { half } else { 0.5 })
-}
-
-/// The transposed linear part: normals go by the inverse transposed.
-fn transposed(map: &Affine) -> [[f64; 3]; 3] {
-    let m = map.linear_f64();
-    std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
 }

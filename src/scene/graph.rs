@@ -1,7 +1,7 @@
 //! The scene: arenas of nodes, materials, patterns and images that refer to each other by id. A value that the text uses
 //! twice is stored once; a node may have several parents.
 
-use super::{Camera, Color, Image, Light, Material, MaterialId, Pattern, PatternId, Settings, Shape};
+use super::{Camera, Color, Image, Light, Material, MaterialId, Mesh, MeshId, Pattern, PatternId, Settings, Shape};
 use crate::diag::Place;
 use crate::math::Affine;
 use std::ops::ControlFlow;
@@ -23,6 +23,8 @@ pub struct Scene {
     pub patterns: Vec<Pattern>,
     /// Pictures that a live pattern shows; others were never opened.
     pub images: Vec<Image>,
+    /// Mesh files that the scene shows; others were never opened.
+    pub meshes: Vec<Mesh>,
     /// At least one; the first is the default.
     pub cameras: Vec<Camera>,
     /// What a ray sees that meets nothing.
@@ -89,6 +91,7 @@ impl Scene {
             materials: vec![plain],
             patterns,
             images: Vec::new(),
+            meshes: Vec::new(),
             cameras: vec![Camera::default()],
             background: Color::BLACK,
             ambient: Color::linear_gray(0.1),
@@ -107,6 +110,11 @@ impl Scene {
     /// The pattern named `id`.
     pub fn pattern(&self, id: PatternId) -> &Pattern {
         &self.patterns[id.0 as usize]
+    }
+
+    /// The mesh named `id`.
+    pub fn mesh(&self, id: MeshId) -> &Mesh {
+        &self.meshes[id.0 as usize]
     }
 
     /// How many [`Instance`]s there are; saturating, and found without visiting them: a few nested groups can make more

@@ -1,5 +1,6 @@
 //! The shapes, in the space in which they are made. y is up, axes are right-handed, lengths are scene units.
 
+use super::MeshId;
 use glam::DVec3;
 
 /// A surface. Every size is positive and within [`range`](super::range); directions have any length but 0.
@@ -84,6 +85,13 @@ pub enum Shape {
         /// Corners.
         points: Box<[DVec3; 4]>,
     },
+    /// The triangles of a file.
+    Mesh {
+        /// The file.
+        mesh: MeshId,
+        /// Whether its normals, where it has any, give it a smooth look.
+        smooth: bool,
+    },
 }
 
 impl Shape {
@@ -99,6 +107,7 @@ impl Shape {
             Shape::Torus { .. } => "torus",
             Shape::Triangle { .. } => "triangle",
             Shape::Tetrahedron { .. } => "tetrahedron",
+            Shape::Mesh { .. } => "mesh",
         }
     }
 }

@@ -55,7 +55,7 @@ pub fn reach(scene: &Scene) -> RangeInclusive<i32> {
         let scale = [if z < scale[0] { z } else { scale[0] }, if z > scale[1] { z } else { scale[1] }];
         match &scene.node(instance.node).kind {
             NodeKind::Light(light) => lengths.points(&[light.at], scale),
-            NodeKind::Shape(shape) => shape_lengths(shape, scale, &mut lengths),
+            NodeKind::Shape(shape) => shape_lengths(scene, shape, scale, &mut lengths),
             NodeKind::Group(_) | NodeKind::Transformed { .. } => {}
         }
     });
@@ -64,7 +64,7 @@ pub fn reach(scene: &Scene) -> RangeInclusive<i32> {
     -doublings(lengths.least / SMALLEST)..=doublings(LARGEST / lengths.most)
 }
 
-fn shape_lengths(shape: &Shape, scale: [f64; 2], lengths: &mut Lengths) {
+fn shape_lengths(scene: &Scene, shape: &Shape, scale: [f64; 2], lengths: &mut Lengths) {
     let (points, sizes): (&[DVec3], &[f64]) = match shape {
         Shape::Sphere { at, r } => (&[*at], &[*r]),
         Shape::Plane { through, .. } => (&[*through], &[]),
@@ -75,6 +75,7 @@ fn shape_lengths(shape: &Shape, scale: [f64; 2], lengths: &mut Lengths) {
         Shape::Torus { at, r, tube, .. } => (&[*at], &[*r, *tube]),
         Shape::Triangle { points, .. } => (&points[..], &[]),
         Shape::Tetrahedron { points } => (&points[..], &[]),
+        Shape::Mesh { mesh, .. } => (&scene.mesh(*mesh).data.bounds, &[]),
     };
     lengths.points(points, scale);
     sizes.iter().for_each(|s| lengths.size(*s, scale));

@@ -111,7 +111,7 @@ pub(super) fn inside(shape: &Specimen, place: &Affine, x: &mut Draw) -> [f64; 3]
         Kind::Ring(ring) => ((ring.r + 0.5 * ring.tube) / ring.scale, v[1] * ring.tube / ring.scale),
         Kind::Sphere(r) | Kind::Disc { r, .. } => (r, r * v[1]),
         Kind::Cuboid(half) => (half[1], half[1] * v[1]),
-        Kind::Plane | Kind::Triangle(_) => (1.0, 0.0),
+        Kind::Plane | Kind::Triangle(_) | Kind::Mesh(_) => (1.0, 0.0),
     };
     let flat = matches!(shape.primitive.kind, Kind::Plane | Kind::Disc { .. });
     let p = [radius * v[0], if flat { 0.0 } else { y }, radius * v[2]];

@@ -1,7 +1,7 @@
 //! Pictures from files as patterns.
 
 use super::pattern::{AXES, add, axis};
-use crate::lang::build::PictureFile;
+use crate::lang::build::AssetFile;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Run, Ty, Word, optional, required};
@@ -45,6 +45,6 @@ fn image(host: &mut dyn Host, a: &[Value]) -> Outcome {
     let filter = if a.text(2) == "nearest" { Filter::Nearest } else { Filter::Bilinear };
     // What is wrong with the picture is shown at its name.
     let span = host.argument();
-    let image = host.build().image(PictureFile { path: a.text(0).into(), file: span.file, span });
+    let image = host.build().image(AssetFile { path: a.text(0).into(), file: span.file, span });
     add(host, PatternKind::Image { image, mapping, filter })
 }

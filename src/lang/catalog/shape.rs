@@ -1,5 +1,6 @@
 //! Shapes.
 
+use crate::lang::build::AssetFile;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Param, Run, Ty, Word, optional, required};
@@ -146,6 +147,24 @@ pub const WORDS: &[Word] = &[
         example: "tetrahedron(at: [0, 1, 0], size: 2)\nlight(at: [4, 8, 6])",
         run: Run::Call(tetrahedron),
     },
+    Word {
+        name: "mesh",
+        kind: Kind::Shape,
+        params: &[
+            required("file", Ty::Text, "a PLY, OBJ or STL file; its path starts at the scene file's folder"),
+            optional(
+                "smooth",
+                Ty::Bool,
+                Default::Bool(true),
+                "whether directions that the file gives at its corners make it look smooth",
+            ),
+            MAT,
+            NAME,
+        ],
+        doc: "The triangles of a file, in the file's own units and axes; faces with more corners are parted into triangles.",
+        example: "mesh(\"assets/pumpkin.ply\", mat: phong(color: #e07414)) |> rotate(y: 30deg)\nlight(at: [4, 8, 6])",
+        run: Run::Call(mesh),
+    },
 ];
 
 /// Stores a shape; its material and name are the last two parameters.
@@ -288,4 +307,11 @@ fn tetrahedron(host: &mut dyn Host, a: &[Value]) -> Outcome {
         return Err(Fault::new("the corners of this tetrahedron are in one plane").into());
     }
     make(host, a, Shape::Tetrahedron { points: Box::new(points) })
+}
+
+fn mesh(host: &mut dyn Host, a: &[Value]) -> Outcome {
+    // What is wrong with the file is shown at its name.
+    let span = host.argument();
+    let mesh = host.build().mesh(AssetFile { path: a.text(0).into(), file: span.file, span });
+    make(host, a, Shape::Mesh { mesh, smooth: a.is_true(1) })
 }

@@ -3,6 +3,7 @@
 mod hostile;
 mod likeness;
 mod memory;
+mod mesh;
 mod mistake;
 mod module;
 mod mutation;

@@ -5,14 +5,16 @@
 
 mod cuboid;
 mod flat;
+mod mesh;
 pub mod primitive;
 pub mod quadric;
 mod sphere;
 mod torus;
-mod triangle;
+pub mod triangle;
 mod tube;
 
 use crate::math::Real;
+pub use mesh::Mesh;
 pub use primitive::{Kind, Primitive, Surface};
 pub use torus::Ring;
 pub use triangle::TriangleData;

@@ -1,8 +1,9 @@
 //! One surface of the world: a shape, where it stands, what it is made of.
 
+use super::triangle::Sides;
 use super::{Ring, TriangleData, Tube, Visit, cuboid, flat, sphere, torus, triangle, tube};
 use crate::math::Real;
-use crate::math::real::{dot, each3, scaled};
+use crate::math::real::{dot, each3, scaled, splat3};
 use crate::render::frame::{Frame, LinearMap};
 use crate::render::ray::Own;
 
@@ -42,6 +43,8 @@ pub enum Kind {
     Ring(Ring),
     /// By number in the world's table. Its corners stand in the world, so the frame isn't used.
     Triangle(u32),
+    /// By number in the world's table. Its triangles are surfaces with numbers of their own; it is none itself.
+    Mesh(u32),
 }
 
 impl Kind {
@@ -49,6 +52,8 @@ impl Kind {
     pub fn is_left_for_good(&self) -> bool {
         match self {
             Kind::Sphere(_) | Kind::Plane | Kind::Disc { .. } | Kind::Cuboid(_) | Kind::Triangle(_) => true,
+            // A triangle of it is, but another one may be in the way.
+            Kind::Mesh(_) => false,
             Kind::Tube(tube) => tube.caps,
             Kind::Ring(_) => false,
         }
@@ -56,7 +61,7 @@ impl Kind {
 
     /// Whether shading normals may differ from geometric ones.
     pub fn may_be_smooth(&self) -> bool {
-        matches!(self, Kind::Triangle(_))
+        matches!(self, Kind::Triangle(_) | Kind::Mesh(_))
     }
 }
 
@@ -99,7 +104,8 @@ impl Primitive {
         visit: &mut impl Visit<R>,
     ) {
         if let Kind::Triangle(i) = self.kind {
-            return triangle::crossing(&tables.triangles[i as usize], o, d, own, visit);
+            let v = each3!(tables.triangles[i as usize].v, v => splat3(v));
+            return triangle::crossing(v, o, d, own, visit);
         }
         let ray = self.frame.localize::<R, AT_EYE>(tables.maps, o, d);
         match &self.kind {
@@ -109,7 +115,7 @@ impl Primitive {
             Kind::Cuboid(half) => cuboid::crossings(*half, &ray, own, visit),
             Kind::Tube(t) => tube::crossings(t, &ray, own, visit),
             Kind::Ring(ring) => torus::crossings(ring, &ray, own, visit),
-            Kind::Triangle(_) => {}
+            Kind::Triangle(_) | Kind::Mesh(_) => {}
         }
     }
 
@@ -125,15 +131,13 @@ impl Primitive {
     ) -> Surface<R> {
         if let Kind::Triangle(i) = self.kind {
             let tri = &tables.triangles[i as usize];
-            let (point, local) = triangle::point(tri, o, d);
-            let offset = dot(each3!(point.n, x => x.abs()), point.error);
-            let ns = triangle::shading_normal(tri, local, point.n);
-            return Surface { p: point.p, n: point.n, ns, offset, local };
+            let shading = tri.shading.map(|s| each3!(s, n => splat3(n)));
+            return triangle::surface(Sides { v: each3!(tri.v, v => splat3(v)), n: splat3(tri.n), shading }, o, d);
         }
         let p = self.frame.localize::<R, AT_EYE>(tables.maps, o, d).at(t);
         let point = match &self.kind {
             Kind::Sphere(r) => sphere::point(*r, p),
-            Kind::Plane | Kind::Disc { .. } | Kind::Triangle(_) => flat::point(p),
+            Kind::Plane | Kind::Disc { .. } | Kind::Triangle(_) | Kind::Mesh(_) => flat::point(p),
             Kind::Cuboid(half) => cuboid::point(*half, p, part),
             Kind::Tube(t) => tube::point(t, p, part),
             Kind::Ring(ring) => torus::point(ring, p),

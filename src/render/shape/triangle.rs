@@ -4,8 +4,8 @@
 //! Woop, Benthin, Wald, "Watertight ray/triangle intersection", JCGT 2(1), 2013, with Kahan's difference of products in
 //! place of their double-precision fallback.
 
-use super::{Point, Visit};
-use crate::math::real::{axpy, each3, minus, scaled, splat3, three};
+use super::{Surface, Visit};
+use crate::math::real::{axpy, dot, each3, minus, scaled, select3, three};
 use crate::math::{Mask, Real};
 use crate::render::ray::Own;
 
@@ -43,7 +43,7 @@ fn is_ours<R: Real>(clockwise: R::Mask, p: (R, R), q: (R, R)) -> R::Mask {
 }
 
 #[inline(always)]
-fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
+fn edges<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3]) -> Edges<R> {
     let zero = R::zero();
     // The axis along which the ray goes furthest becomes z, so that the shear never divides by something small.
     let (ax, ay, az) = (d[0].abs(), d[1].abs(), d[2].abs());
@@ -52,7 +52,7 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     let d = turned::<R>(z_most, x_most, d);
     let sz = R::one() / d[2];
     let (sx, sy) = (d[0] * sz, d[1] * sz);
-    let [a, b, c] = each3!(tri.v, v => turned::<R>(z_most, x_most, minus(splat3(v), o)));
+    let [a, b, c] = each3!(v, v => turned::<R>(z_most, x_most, minus(v, o)));
     let [(ax, ay), (bx, by), (cx, cy)] = each3!([a, b, c], v => ((-sx).mul_add(v[2], v[0]), (-sy).mul_add(v[2], v[1])));
     let e = [
         cx.difference_of_products(by, cy, bx),
@@ -79,16 +79,10 @@ fn edges<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> Edges<R> {
     Edges { e, det, t, hit }
 }
 
-/// Calls `visit(t, part, valid)` for the crossing.
+/// Calls `visit(t, part, valid)` for the crossing with the triangle between the corners `v`: one for all lanes, or one a lane.
 #[inline(always)]
-pub(super) fn crossing<R: Real>(
-    tri: &TriangleData,
-    o: [R; 3],
-    d: [R; 3],
-    own: Option<Own<R>>,
-    visit: &mut impl Visit<R>,
-) {
-    let x = edges(tri, o, d);
+pub fn crossing<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3], own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+    let x = edges(v, o, d);
     let mut valid = x.hit;
     if !valid.any() {
         return;
@@ -99,13 +93,22 @@ pub(super) fn crossing<R: Real>(
     visit.crossing(x.t, R::zero(), valid);
 }
 
-/// Where the ray meets the triangle: the point in the world, and (β, 0, γ), the weights of the second and third corner, as
-/// the local point that patterns start from.
+/// What shading knows of a triangle, for each lane of one of its own.
+pub struct Sides<R> {
+    /// Corners.
+    pub v: [[R; 3]; 3],
+    /// Unit normal.
+    pub n: [R; 3],
+    /// Shading normals at the corners, all 0 where it is flat.
+    pub shading: Option<[[R; 3]; 3]>,
+}
+
+/// The surface where the ray meets the triangle; its local point is (β, 0, γ), the weights of the second and third corner.
 #[inline(always)]
-pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point<R>, [R; 3]) {
-    let x = edges(tri, o, d);
+pub fn surface<R: Real>(tri: Sides<R>, o: [R; 3], d: [R; 3]) -> Surface<R> {
+    let Sides { v, n, shading } = tri;
+    let x = edges(v, o, d);
     let (beta, gamma) = (x.e[1] / x.det, x.e[2] / x.det);
-    let v: [[R; 3]; 3] = each3!(tri.v, v => splat3(v));
     // From the first corner along the edges: a coordinate that all corners share is then met exactly.
     let (along, across) = (minus(v[1], v[0]), minus(v[2], v[0]));
     let p = axpy(gamma, across, axpy(beta, along, v[0]));
@@ -118,21 +121,19 @@ pub(super) fn point<R: Real>(tri: &TriangleData, o: [R; 3], d: [R; 3]) -> (Point
         let (e1, e2) = (along[i].abs(), across[i].abs());
         u5 * b.mul_add(e1, c.mul_add(e2, v[0][i].abs())) + u6 * (e1 + e2)
     });
-    (Point { p, n: splat3(tri.n), error }, [beta, R::zero(), gamma])
+    let ns = shading.map_or(n, |s| shading_normal(s, (beta, gamma), n));
+    Surface { p, n, ns, offset: dot(each3!(n, x => x.abs()), error), local: [beta, R::zero(), gamma] }
 }
 
-/// The interpolated shading normal at (β, γ), of unit length, on the side of `n`; `n` itself without one.
+/// The interpolated shading normal at (β, γ), of unit length; `n` where it is 0.
 #[inline(always)]
-pub(super) fn shading_normal<R: Real>(tri: &TriangleData, local: [R; 3], n: [R; 3]) -> [R; 3] {
-    let Some(shading) = tri.shading else { return n };
-    let s: [[R; 3]; 3] = each3!(shading, n => splat3(n));
-    let (b, c) = (local[0], local[2]);
+fn shading_normal<R: Real>(s: [[R; 3]; 3], (b, c): (R, R), n: [R; 3]) -> [R; 3] {
     let a = R::one() - b - c;
     let m = axpy(c, s[2], axpy(b, s[1], scaled(a, s[0])));
-    let len = crate::math::real::dot(m, m).sqrt();
+    let len = dot(m, m).sqrt();
     let none = len.same(R::zero());
     let inverse = R::one() / R::select(none, R::one(), len);
-    crate::math::real::select3(none, n, scaled(inverse, m))
+    select3(none, n, scaled(inverse, m))
 }
 
 #[cfg(test)]
@@ -146,7 +147,7 @@ mod tests {
 
     fn hit(t: &TriangleData, o: [f64; 3], d: [f64; 3]) -> Option<f64> {
         let mut out = None;
-        crossing(t, o, d, None, &mut |t: f64, _: f64, ok: crate::math::real::Bool| out = ok.0.then_some(t));
+        crossing(t.v, o, d, None, &mut |t: f64, _: f64, ok: crate::math::real::Bool| out = ok.0.then_some(t));
         out
     }
 
