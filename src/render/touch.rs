@@ -90,10 +90,10 @@ impl<R: Real, V: Visit<R>> Visit<R> for ButAtTheEnd<'_, R, V> {
         }
         let (t_held, part_held, valid_held) = self.held;
         let nearer = valid & (t - self.end).abs().lt((t_held - self.end).abs());
-        let pick = |a: R::Mask, b: R::Mask| (nearer & a) | (!nearer & b);
-        self.held = (R::select(nearer, t, t_held), R::select(nearer, part, part_held), pick(valid, valid_held));
+        let (held, passed) = ((nearer & valid) | (!nearer & valid_held), (nearer & valid_held) | (!nearer & valid));
+        self.held = (R::select(nearer, t, t_held), R::select(nearer, part, part_held), held);
         let other = (R::select(nearer, t_held, t), R::select(nearer, part_held, part));
-        self.inner.crossing(other.0, other.1, pick(valid_held, valid));
+        self.inner.crossing(other.0, other.1, passed);
     }
 }
 

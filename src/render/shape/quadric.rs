@@ -158,10 +158,9 @@ fn deflated<R: Real>(ray: &LocalRay<R>, t0: R, form: &impl Quadric, own: R::Mask
     // Along a generator of a cylinder or cone there is no other crossing: 0/0.
     let other = R::select(other.same(other), other, R::splat(f64::INFINITY));
     let (lo, hi) = (other.min(zero), other.max(zero));
-    let pick = |t: R, old: Crossing<R>| Crossing::select(own, Crossing { tau: t - t0, t }, old);
     Roots {
-        lo: pick(lo, found.lo),
-        hi: pick(hi, found.hi),
+        lo: Crossing::select(own, Crossing { tau: lo - t0, t: lo }, found.lo),
+        hi: Crossing::select(own, Crossing { tau: hi - t0, t: hi }, found.hi),
         real: found.real | own,
         always_inside: found.always_inside & !own,
         ..found

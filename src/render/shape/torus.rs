@@ -34,7 +34,10 @@ impl Ring {
 pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let (zero, one) = (R::zero(), R::one());
     // 1 and -1 for rays that leave the ring to the outside and to the inside, 0 for those from elsewhere.
-    let leaves = own.map_or(zero, |own| R::select(own.here, R::select(own.outward, one, -one), zero));
+    let leaves = match own {
+        Some(own) => R::select(own.here, R::select(own.outward, one, -one), zero),
+        None => zero,
+    };
     let LocalRay { o, o_lo: lo, d, d_lo: e } = *ray;
     let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], e[0], e[1], e[2], leaves];
     let found = R::each(
