@@ -198,9 +198,9 @@ fn patterns_are_of_numbers_unless_colors_come_in() {
 
 #[test]
 fn patterns_keep_their_arguments() {
-    let e =
-        evaluate(&request("let p = brick(1, 0.5, size: [3, 1], gap: 0.2)\nlet q = noise(0, 2, octaves: 6, seed: 9)"));
-    let patterns = e.map(|e| e.scene.patterns).unwrap_or_default();
+    let text = "let p = brick(1, 0.5, size: [3, 1], gap: 0.2)\nlet q = noise(0, 2, octaves: 6, seed: 9)\n\
+        sphere(mat: phong(reflect: p, bump: q))";
+    let patterns = evaluate(&request(text)).map(|e| e.scene.patterns).unwrap_or_default();
     let red = |id: PatternId| match patterns[id.0 as usize].kind {
         PatternKind::Constant(c) => c.0[0],
         _ => f64::NAN,
