@@ -241,7 +241,7 @@ mod tests {
              mat     its material; without one, the group's, or a plain gray: a material\n  \
              name    what messages and `explain` call it: a text\n\n\
              Example:\n    disc(r: 2, hole: 1)\n    light(at: [4, 8, 6])\n\n\
-             See also: sphere, plane, box, cylinder, cone, torus, triangle, tetrahedron\n"
+             See also: sphere, plane, box, cylinder, cone, torus, triangle, tetrahedron, mesh\n"
         );
     }
 

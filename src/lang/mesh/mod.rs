@@ -139,7 +139,7 @@ fn checked(mut raw: Raw) -> Result<MeshData, String> {
     if let Some(i) = raw.normals.iter().position(|n| !n.iter().all(|x| x.is_finite())) {
         return Err(format!("direction {} at a corner isn't a number", i + 1));
     }
-    if raw.normals.iter().any(|n| *n == [0.0; 3]) {
+    if raw.normals.contains(&[0.0; 3]) {
         let number = |i: u32| if raw.normals[i as usize] == [0.0; 3] { MeshData::FLAT } else { i };
         let of = if raw.normals_of.is_empty() { &raw.triangles } else { &raw.normals_of };
         raw.normals_of = of.iter().map(|t| t.map(|i| if i == MeshData::FLAT { i } else { number(i) })).collect();
