@@ -152,7 +152,7 @@ impl InLanes for Trace<'_> {
             for ray in rays {
                 let mut nearest = Nearest { scene, o: ray.o, d: ray.d, t: ray.t_max, id: NONE, current: 0.0 };
                 let spread = Spread::of_one(ray.o, ray.d);
-                tree.walk::<L::Boxes>(&spread, f64::UNIT_ROUNDOFF, ray.t_max, &mut nearest);
+                tree.walk::<L::Boxes>(&spread, <f64 as Real>::UNIT_ROUNDOFF, ray.t_max, &mut nearest);
                 hits += (nearest.id != NONE) as usize;
             }
             return hits;
