@@ -3,14 +3,14 @@
 //! leaves mesh and rays there for `benches/peers/embree.cpp`, which measures the same rays in Embree. No thresholds; figures
 //! of one run compare only with each other, for machines drift.
 
-use rtdsl::math::Affine;
+use rtdsl::math::best::{InLanes, in_widest_lanes};
 use rtdsl::math::hash::KeyedHash;
-use rtdsl::math::real::Bool;
+use rtdsl::math::{Affine, Elem, Lane, Mask, Real};
 use rtdsl::render::bounds::Bounds;
-use rtdsl::render::bvh::Bvh;
+use rtdsl::render::bvh::{Bvh, Leaves, Spread};
 use rtdsl::render::frame::Frame;
 use rtdsl::render::shape::primitive::Tables;
-use rtdsl::render::shape::{Kind, Primitive, TriangleData};
+use rtdsl::render::shape::{Kind, Primitive, TriangleData, Visit};
 use std::path::Path;
 use std::time::Instant;
 
@@ -18,7 +18,6 @@ use std::time::Instant;
 const CELLS: usize = 289;
 /// Where the mesh is seen from, towards its middle.
 const EYE: [f64; 3] = [0.0, 5.0, 14.0];
-const LIGHT: [f64; 3] = [6.0, 10.0, 6.0];
 const SIZE: [usize; 2] = [1280, 720];
 const ROUNDS: usize = 7;
 
@@ -133,46 +132,101 @@ impl Scene {
         }
         scene
     }
+}
 
+/// Finds what rays meet first; gives how many meet anything. `together`: as many rays at a time as a register holds.
+struct Trace<'s> {
+    scene: &'s Scene,
+    tree: &'s Bvh,
+    rays: &'s [Ray],
+    together: bool,
+}
+
+impl InLanes for Trace<'_> {
+    type Out = usize;
     #[inline(always)]
-    fn nearest(&self, tree: &Bvh, ray: &Ray) -> (f64, u32) {
-        let (mut best, mut id) = (ray.t_max, u32::MAX);
-        let tables = Tables { maps: &[], triangles: &self.triangles };
-        tree.traverse(ray.o, ray.d, best, |k| {
-            self.primitives[k as usize].crossings::<f64, false>(
-                tables,
-                ray.o,
-                ray.d,
-                None,
-                &mut |t: f64, _: f64, ok: Bool| {
-                    if ok.0 && 0.0 < t && (t < best || (t == best && k < id)) {
-                        (best, id) = (t, k);
-                    }
+    fn run<L: Lane>(self) -> usize {
+        let Trace { scene, tree, rays, together } = self;
+        let mut hits = 0;
+        if !together {
+            for ray in rays {
+                let mut nearest = Nearest { scene, o: ray.o, d: ray.d, t: ray.t_max, id: NONE, current: 0.0 };
+                let spread = Spread::of_one(ray.o, ray.d);
+                tree.walk::<L::Boxes>(&spread, <f64 as Real>::UNIT_ROUNDOFF, ray.t_max, &mut nearest);
+                hits += (nearest.id != NONE) as usize;
+            }
+            return hits;
+        }
+        for rays in rays.chunks_exact(L::WIDTH) {
+            let mut columns = [[L::Elem::default(); 16]; 7];
+            for (k, ray) in rays.iter().enumerate() {
+                for c in 0..3 {
+                    columns[c][k] = L::Elem::from_f64(ray.o[c]);
+                    columns[3 + c][k] = L::Elem::from_f64(ray.d[c]);
+                }
+                columns[6][k] = L::Elem::from_f64(ray.t_max);
+            }
+            let o = [L::load(&columns[0]), L::load(&columns[1]), L::load(&columns[2])];
+            let d = [L::load(&columns[3]), L::load(&columns[4]), L::load(&columns[5])];
+            let t = L::load(&columns[6]);
+            let mut nearest = Nearest { scene, o, d, t, id: L::splat(NONE), current: L::zero() };
+            tree.traverse(
+                o,
+                d,
+                t,
+                #[inline(always)]
+                |id| {
+                    nearest.test_one(id);
+                    nearest.t
                 },
             );
-            best
-        });
-        (best, id)
-    }
-
-    fn all_nearest(&self, tree: &Bvh, rays: &[Ray]) -> usize {
-        rays.iter().filter(|r| self.nearest(tree, r).1 != u32::MAX).count()
+            hits += nearest.id.lt(L::splat(NONE)).bits().count_ones() as usize;
+        }
+        hits
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn on_avx2(scene: &Scene, tree: &Bvh, rays: &[Ray]) -> usize {
-    rays.iter().filter(|r| scene.nearest(tree, r).1 != u32::MAX).count()
+/// More than any number of a primitive.
+const NONE: f64 = 4e9;
+
+/// Keeps the nearest crossing.
+struct Nearest<'s, L> {
+    scene: &'s Scene,
+    o: [L; 3],
+    d: [L; 3],
+    t: L,
+    id: L,
+    current: L,
 }
 
-fn best(scene: &Scene, tree: &Bvh, rays: &[Ray]) -> usize {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-        // SAFETY: both were just found.
-        return unsafe { on_avx2(scene, tree, rays) };
+impl<L: Lane> Nearest<'_, L> {
+    #[inline(always)]
+    fn test_one(&mut self, id: u32) {
+        self.current = L::splat(id as f64);
+        let tables = Tables { maps: &[], triangles: &self.scene.triangles };
+        let (o, d) = (self.o, self.d);
+        self.scene.primitives[id as usize].crossings::<L, false>(tables, o, d, None, self);
     }
-    scene.all_nearest(tree, rays)
+}
+
+impl<L: Lane> Visit<L> for Nearest<'_, L> {
+    #[inline(always)]
+    fn crossing(&mut self, t: L, _: L, valid: L::Mask) {
+        let nearer = t.lt(self.t) | (t.same(self.t) & self.current.lt(self.id));
+        let m = valid & L::zero().lt(t) & nearer;
+        self.t = L::select(m, t, self.t);
+        self.id = L::select(m, self.current, self.id);
+    }
+}
+
+impl Leaves for Nearest<'_, f64> {
+    #[inline(always)]
+    fn test(&mut self, ids: &[u32]) -> f64 {
+        for id in ids {
+            self.test_one(*id);
+        }
+        self.t
+    }
 }
 
 /// Rays from the eye, in tiles of 4 × 4 pixels.
@@ -208,25 +262,31 @@ fn timed<T>(rounds: usize, mut f: impl FnMut() -> T) -> (f64, T) {
     (seconds, last.expect("at least one round"))
 }
 
-fn rate(what: &str, rays: &[Ray], f: impl Fn(&[Ray]) -> usize) {
-    let (seconds, hits) = timed(ROUNDS, || f(rays));
-    let (rate, per) = (rays.len() as f64 / seconds / 1e6, seconds / rays.len() as f64 * 1e9);
-    println!(
-        "  {what:<32} {rate:7.2} M rays/s ({per:.0} ns a ray, hits {:.1} %)",
-        100.0 * hits as f64 / rays.len() as f64
-    );
+fn rate(what: &str, scene: &Scene, tree: &Bvh, rays: &[Ray]) {
+    for (how, together) in [("alone", false), ("a register at a time", true)] {
+        let (seconds, hits) = timed(ROUNDS, || in_widest_lanes(Trace { scene, tree, rays, together }));
+        let (rate, per) = (rays.len() as f64 / seconds / 1e6, seconds / rays.len() as f64 * 1e9);
+        let share = 100.0 * hits as f64 / rays.len() as f64;
+        println!("  {what:<22} {how:<22} {rate:7.2} M rays/s ({per:.0} ns a ray, {share:.1} % hit)");
+    }
 }
 
-fn build(what: &str, boxes: &[(u32, Bounds)], most: usize) -> Bvh {
+/// Builds the tree with one thread and with two. All primitives from `batched_from` on may share leaves.
+fn build(what: &str, boxes: &[(u32, Bounds)], batched_from: u32) -> Bvh {
     let never = std::sync::atomic::AtomicBool::new(false);
     let mut tree = Bvh::default();
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let (seconds, built) = pool.install(|| timed(5, || Bvh::build_unless(boxes, most, &never)));
-        tree = built.unwrap_or_default();
-        println!("{what}: built in {:.1} ms, {threads} threads", seconds * 1e3);
+        let mut seconds = Vec::new();
+        for _ in 0..5 {
+            let boxes = boxes.to_vec();
+            let start = Instant::now();
+            tree = pool.install(|| Bvh::build_unless(boxes, batched_from, &never)).unwrap_or_default();
+            seconds.push(start.elapsed().as_secs_f64());
+        }
+        println!("{what}: {:.1} ms to build, {threads} threads", median(seconds) * 1e3);
     }
-    println!("  {:.1} MB, {}", tree.memory_bytes() as f64 / 1e6, tree.summary());
+    println!("  {:.1} MB", tree.memory_bytes() as f64 / 1e6);
     tree
 }
 
@@ -247,33 +307,16 @@ fn mesh() {
             t_max: f64::INFINITY,
         })
         .collect();
-    for most in std::env::var("MOST").unwrap_or("4,8".into()).split(',').map(|x| x.parse::<usize>().expect("a number"))
-    {
-        let tree = build(&format!("mesh of {} triangles, {most} a leaf", mesh.faces.len()), &scene.boxes, most);
-        let (mut hitting, mut shadow) = (Vec::new(), Vec::new());
-        for tile in all.chunks(16) {
-            let t: Vec<f64> = tile.iter().map(|r| scene.nearest(&tree, r).0).collect();
-            if t.iter().all(|t| *t < f64::INFINITY) {
-                hitting.extend(tile);
-                shadow.extend(tile.iter().zip(t).map(|(r, t)| {
-                    let o = [0, 1, 2].map(|c| r.d[c] * t * 0.9999);
-                    Ray { o, d: [0, 1, 2].map(|c| LIGHT[c] - EYE[c] - o[c]), t_max: 1.0 }
-                }));
-            }
-        }
-        rate("camera rays", &all, |r| best(&scene, &tree, r));
-        rate("camera rays that hit", &hitting, |r| best(&scene, &tree, r));
-        rate("shadow rays, nearest", &shadow, |r| best(&scene, &tree, r));
-        rate("random rays", &lots, |r| best(&scene, &tree, r));
-    }
+    let tree = build(&format!("mesh of {} triangles", mesh.faces.len()), &scene.boxes, 0);
+    rate("camera rays", &scene, &tree, &all);
+    rate("random rays", &scene, &tree, &lots);
 }
 
 fn balls() {
     for n in [1_000, 10_000, 100_000, 1_000_000] {
         let scene = Scene::balls(n);
-        let tree = build(&format!("{n} balls"), &scene.boxes, 1);
-        let rays = camera_rays([0.0, 12.0, 40.0], 0.25);
-        rate("camera rays", &rays, |r| best(&scene, &tree, r));
+        let tree = build(&format!("{n} balls"), &scene.boxes, u32::MAX);
+        rate("camera rays", &scene, &tree, &camera_rays([0.0, 12.0, 40.0], 0.25));
     }
 }
 

@@ -2,6 +2,7 @@
 //! elementary functions and the hash behind everything random. Knows nothing of scenes or pictures.
 
 pub mod affine;
+pub mod best;
 pub mod dd;
 pub mod float;
 pub mod fun;
