@@ -87,7 +87,7 @@ fn everything() -> Scene {
         b.shape(Shape::Sphere { at, r: 0.2 }, if i % 3 == 0 { glass } else { marble });
     }
     let corners = [v(-4.0, 0.0, 1.0), v(-3.0, 0.0, 2.0), v(-4.5, 1.5, 1.0)];
-    b.shape(Shape::Triangle { points: corners, normals: None }, mirror);
+    b.shape(Shape::Triangle { points: Box::new(corners), normals: None }, mirror);
     b.scene
 }
 

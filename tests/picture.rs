@@ -60,7 +60,10 @@ fn lamps_and_panes() -> Scene {
             1 => Shape::Disc { at: DVec3::ZERO, normal: DVec3::Y, r: 0.9, hole: 0.1 },
             2 => Shape::Cone { from: DVec3::ZERO, to: v(0.0, 1.0, 0.0), r: 0.6, top: 0.0, caps: true },
             3 => Shape::Torus { at: DVec3::ZERO, r: 0.6, tube: 0.2, axis: DVec3::X },
-            _ => Shape::Triangle { points: [v(-1.0, 0.0, 0.0), v(1.0, 0.0, -0.5), v(0.2, 1.0, 0.3)], normals: None },
+            _ => Shape::Triangle {
+                points: Box::new([v(-1.0, 0.0, 0.0), v(1.0, 0.0, -0.5), v(0.2, 1.0, 0.3)]),
+                normals: None,
+            },
         };
         b.placed(shape.clone(), pane, place);
         if i % 4 == 0 {

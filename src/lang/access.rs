@@ -11,8 +11,8 @@ use crate::diag::Span;
 use ecow::EcoString;
 use std::sync::Arc;
 
-impl<'p> Machine<'p> {
-    pub(super) fn index(&mut self, of: &Value, index: &Value, ab: &'p (Node, Node)) -> Outcome {
+impl Machine<'_> {
+    pub(super) fn index(&mut self, of: &Value, index: &Value, ab: &(Node, Node)) -> Outcome {
         let span = ab.1.span;
         let Some(n) = of.length().filter(|_| matches!(of, Value::List(_) | Value::Vec3(_) | Value::Range(_))) else {
             let got = described(of, &self.build);
@@ -77,7 +77,7 @@ impl<'p> Machine<'p> {
         Err(self.fail(fault, end))
     }
 
-    pub(super) fn with(&mut self, of: &'p Node, args: &'p [ArgCode], span: Span, frame: Frame<'_>) -> Outcome {
+    pub(super) fn with(&mut self, of: &Node, args: &[ArgCode], span: Span, frame: Frame<'_>) -> Outcome {
         let value = self.eval(of, frame)?;
         match value {
             Value::Record(mut record) => {

@@ -107,7 +107,7 @@ impl<'c> Build<'c> {
         &mut self,
         kind: NodeKind,
         material: Option<MaterialId>,
-        name: Option<String>,
+        name: Option<Box<str>>,
         place: Place,
     ) -> Result<Value, Box<Fault>> {
         self.check_count(self.scene.nodes.len(), "shapes, lights and groups")?;

@@ -4,9 +4,10 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Call, Frame, Machine, word_name};
+use super::scalar::{Fast, Other};
 use super::suggest::property_meant;
 use super::value::{BuiltinId, Closure, FunctionId, Value, number_text};
-use super::word::{Default, Run, Word, described};
+use super::word::{Args, Default, Run, Word, described};
 use crate::diag::Span;
 use ecow::EcoString;
 use std::sync::Arc;
@@ -16,9 +17,9 @@ pub const NAMELESS: &str = "function";
 /// Words with more parameters keep their arguments on the heap.
 const FEW: usize = 4;
 
-impl<'p> Machine<'p> {
+impl Machine<'_> {
     /// A built-in word, its arguments placed already.
-    pub fn call_builtin(&mut self, id: BuiltinId, args: &'p [(u16, Node)], span: Span, frame: Frame<'_>) -> Outcome {
+    pub fn call_builtin(&mut self, id: BuiltinId, args: &[(u16, Node)], span: Span, frame: Frame<'_>) -> Outcome {
         let word = catalog::word(id);
         let most = args.last().map_or(0, |(i, _)| usize::from(*i) + 1);
         let count = args.iter().map(|(i, _)| usize::from(*i) + 1).max().unwrap_or(most).max(word.params.len());
@@ -34,13 +35,10 @@ impl<'p> Machine<'p> {
     }
 
     /// Evaluates arguments; mistakes in several of them are all reported.
-    fn arguments(&mut self, values: &mut [Value], args: &'p [(u16, Node)], frame: Frame<'_>) -> Result<(), Stop> {
+    fn arguments(&mut self, values: &mut [Value], args: &[(u16, Node)], frame: Frame<'_>) -> Result<(), Stop> {
         let mut failed = false;
         for (i, node) in args {
-            match self.attempt(node, frame)? {
-                Some(value) => values[usize::from(*i)] = value,
-                None => failed = true,
-            }
+            failed |= !self.attempt(node, frame, |_, made| values[usize::from(*i)].put(made))?;
         }
         if failed { Err(Stop::Reported) } else { Ok(()) }
     }
@@ -67,7 +65,7 @@ impl<'p> Machine<'p> {
     }
 
     /// Checks a word's arguments and runs it.
-    fn run_word(&mut self, id: BuiltinId, values: &mut [Value], span: Span, args: &[(u16, Node)]) -> Outcome {
+    pub fn run_word(&mut self, id: BuiltinId, values: &mut [Value], span: Span, args: &[(u16, Node)]) -> Outcome {
         let word = catalog::word(id);
         if let (Run::Number(f), [Value::Number(x)]) = (&word.run, &*values) {
             let y = f(*x);
@@ -93,6 +91,7 @@ impl<'p> Machine<'p> {
         self.argument = args.iter().find(|(i, _)| *i == 0).map_or(span, |(_, node)| node.span);
         let result = match &word.run {
             Run::Call(run) => run(self, values),
+            Run::Angle(f) => Ok(Value::Number(f(values.number(0)))),
             Run::Number(_) | Run::Constant(_) | Run::Syntax => Ok(Value::None),
         };
         let result = result.and_then(|value| match value.is_finite() {
@@ -109,54 +108,69 @@ impl<'p> Machine<'p> {
     pub fn call_known(
         &mut self,
         function: FunctionId,
-        callee: Option<&'p Node>,
-        args: &'p [Option<Node>],
+        callee: Option<&Node>,
+        args: &[Option<Node>],
         span: Span,
         frame: Frame<'_>,
-    ) -> Outcome {
+    ) -> Fast {
         let closure = match callee {
             None => None,
-            Some(node) => match self.eval(node, frame)? {
+            Some(node) => match self.fresh(node, frame)? {
                 Value::Function(c) => Some(c),
-                _ => return Err(Stop::Reported),
+                _ => return Err(self.stop(Stop::Reported)),
             },
         };
+        let Some(f) = self.program.functions.get(function.0 as usize) else { return Err(self.stop(Stop::Reported)) };
+        // The frame is there before the arguments are, so that each is put where it belongs.
         let base = self.stack.len();
-        for arg in args {
-            let value = match arg {
-                Some(node) => self.eval(node, frame)?,
-                None => Value::Unset,
-            };
-            self.stack.push(value);
+        self.stack.extend((0..f.slots).map(|_| Value::Unset));
+        for (i, arg) in args.iter().enumerate() {
+            let Some(node) = arg else { continue };
+            self.eval_into(node, frame, |m, made| m.stack[base + i].put(made))?;
         }
-        self.enter(function, closure.as_ref(), base, span)
+        self.enter(function, f, closure.as_ref(), base, span)
     }
 
-    /// Runs a function whose arguments are on the stack from `base`.
-    fn enter(&mut self, function: FunctionId, closure: Option<&Arc<Closure>>, base: usize, span: Span) -> Outcome {
-        let program = self.program;
-        let Some(f) = program.functions.get(function.0 as usize) else { return Err(Stop::Reported) };
-        self.step(span)?;
+    /// Runs a function whose frame is on the stack from `base`, with its arguments.
+    fn enter(
+        &mut self,
+        function: FunctionId,
+        f: &FnCode,
+        closure: Option<&Arc<Closure>>,
+        base: usize,
+        span: Span,
+    ) -> Fast {
+        self.step(span).map_err(|stop| self.stop(stop))?;
         self.nesting += f.depth as usize;
         if self.calls.len() >= self.limits.call_depth || self.nesting > self.limits.nesting {
-            let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len()))
-                .label(format!("{} calls itself without an end?", called(&f.name)))
-                .note("a function that calls itself needs a case in which it doesn't");
-            return Err(self.fail(fault, span));
+            let stop = self.too_nested(f, span);
+            return Err(self.stop(stop));
         }
         self.calls.push(Call { function, base, span, frame: None });
-        self.stack.resize(base + f.slots as usize, Value::Unset);
         let frame = Frame { base, closure };
-        for (i, p) in f.params.iter().enumerate() {
-            if let (Some(default), Value::Unset) = (&p.default, &self.stack[base + i]) {
-                self.stack[base + i] = self.eval(default, frame)?;
+        if f.has_defaults {
+            for (i, p) in f.params.iter().enumerate() {
+                if let (Some(default), Value::Unset) = (&p.default, &self.stack[base + i]) {
+                    self.stack[base + i] = self.fresh(default, frame)?;
+                }
             }
         }
-        let value = self.eval(&f.body, frame)?;
-        self.stack.truncate(base);
-        self.calls.pop();
-        self.nesting -= f.depth as usize;
-        Ok(value)
+        let value = self.scalar(&f.body, frame);
+        // After a mistake things stay as they are: whoever goes on puts them right.
+        if value.is_ok() || self.other.is_ok() {
+            self.stack.truncate(base);
+            self.calls.pop();
+            self.nesting -= f.depth as usize;
+        }
+        value
+    }
+
+    #[cold]
+    fn too_nested(&mut self, f: &FnCode, span: Span) -> Stop {
+        let fault = Fault::new(format!("calls are nested more than {} deep", self.calls.len()))
+            .label(format!("{} calls itself without an end?", called(&f.name)))
+            .note("a function that calls itself needs a case in which it doesn't");
+        self.fail(fault, span)
     }
 
     /// A call of a value. `callee` is its text, and `hides` where that is bound if it hides a built-in word.
@@ -165,7 +179,7 @@ impl<'p> Machine<'p> {
         function: &Value,
         callee: Span,
         hides: Option<Span>,
-        args: &'p [ArgCode],
+        args: &[ArgCode],
         span: Span,
         frame: Frame<'_>,
     ) -> Outcome {
@@ -192,7 +206,7 @@ impl<'p> Machine<'p> {
         function: &Value,
         values: Vec<(Option<EcoString>, Value)>,
         span: Span,
-        args: &'p [ArgCode],
+        args: &[ArgCode],
     ) -> Outcome {
         let program = self.program;
         let (params, rest): (Vec<(&str, bool, bool)>, bool) = match function {
@@ -258,9 +272,14 @@ impl<'p> Machine<'p> {
         match function {
             Value::Builtin(id) => self.run_word(*id, &mut placed, span, &[]),
             Value::Function(c) => {
+                let Some(f) = program.functions.get(c.function.0 as usize) else { return Err(Stop::Reported) };
                 let base = self.stack.len();
                 self.stack.extend(placed);
-                self.enter(c.function, Some(c), base, span)
+                self.stack.resize(base + f.slots as usize, Value::Unset);
+                match self.enter(c.function, f, Some(c), base, span) {
+                    Ok(scalar) => Ok(scalar.into()),
+                    Err(Other) => self.take(),
+                }
             }
             _ => Ok(Value::None),
         }

@@ -1,9 +1,11 @@
 //! The program as it is run: names have become slots, arguments stand in the order of the parameters.
 
 use super::ast::Op;
+use super::parse::Parsed;
 use super::value::{BuiltinId, FunctionId, Value};
-use crate::diag::Span;
+use crate::diag::{FileId, Span};
 use ecow::EcoString;
+use std::sync::Arc;
 
 /// A piece of program and its text.
 #[derive(Debug)]
@@ -12,7 +14,9 @@ pub struct Node {
     pub span: Span,
 }
 
+// The tag has a byte of its own: that is one instruction less, wherever it is looked at.
 #[derive(Debug)]
+#[repr(u8)]
 pub enum Code {
     Const(Value),
     Local(u32),
@@ -28,7 +32,7 @@ pub enum Code {
     Text(Box<[TextCode]>),
     Negate(Box<Node>),
     Not(Box<Node>),
-    Binary(Op, Box<(Node, Node)>),
+    Binary(Box<Operation>),
     And(Box<(Node, Node)>),
     Or(Box<(Node, Node)>),
     If {
@@ -52,6 +56,9 @@ pub enum Code {
         word: BuiltinId,
         args: Box<[(u16, Node)]>,
     },
+    /// Arithmetic of numbers.
+    Formula(Box<Formula>),
+    Apply(Box<Apply>),
     /// A function known beforehand: one argument a parameter. `callee` is its value, where it carries captures.
     Call {
         function: FunctionId,
@@ -70,12 +77,85 @@ pub enum Code {
         body: Box<Node>,
     },
     Index(Box<(Node, Node)>),
-    Field(Box<Node>, EcoString),
+    Field {
+        of: Box<Node>,
+        name: EcoString,
+        /// The item that `.x`, `.y` or `.z` is.
+        item: Option<u8>,
+    },
     With(Box<Node>, Box<[ArgCode]>),
     Closure(FunctionId, Box<[CaptureFrom]>),
     /// A module as a record: its exports' slots.
     Module(Box<[(EcoString, u32)]>),
     Param(Box<ParamCode>),
+}
+
+/// An operator and what it takes.
+#[derive(Debug)]
+pub struct Operation {
+    pub op: Op,
+    pub a: Node,
+    pub b: Node,
+}
+
+/// A word that makes a number of one number or angle, and its argument, placed as in a `CallBuiltin`.
+#[derive(Debug)]
+pub struct Apply {
+    pub word: BuiltinId,
+    pub function: Function1,
+    pub args: [(u16, Node); 1],
+}
+
+/// What such a word computes.
+#[derive(Clone, Copy, Debug)]
+pub enum Function1 {
+    OfNumber(fn(f64) -> f64),
+    /// In degrees.
+    OfAngle(fn(f64) -> f64),
+}
+
+/// An expression of numbers.
+#[derive(Debug)]
+pub struct Formula {
+    pub steps: Vec<Step>,
+    pub is_angle: bool,
+    /// The ordinary way.
+    pub tree: Node,
+}
+
+/// One step. There is a number at hand, the result so far.
+#[derive(Clone, Copy, Debug)]
+pub enum Step {
+    /// Keeps the number at hand for later and goes on with another.
+    Take(Source),
+    /// The number at hand and a further number.
+    Add(Source),
+    Subtract(Source),
+    Multiply(Source),
+    Divide(Source),
+    /// Another operator.
+    With(Op, Source),
+    /// The number kept last, an operator, and the one at hand.
+    Join(Op),
+    Number(fn(f64) -> f64),
+    /// Of an angle: -0 is 0.
+    Angle(fn(f64) -> f64),
+    Negate,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    Constant(f64),
+    Local(u32),
+    Rarer(Rarer),
+}
+
+/// With it, a [`Source`] has so few cases that no table of jumps is made of them.
+#[derive(Clone, Copy, Debug)]
+pub enum Rarer {
+    Global(u32),
+    /// An item of a vector.
+    Item(u32, u8),
 }
 
 #[derive(Debug)]
@@ -128,6 +208,8 @@ pub struct FnCode {
     /// `function` where it has none.
     pub name: EcoString,
     pub params: Vec<ParamSlot>,
+    /// Whether a parameter has one.
+    pub has_defaults: bool,
     /// Values that its frame holds.
     pub slots: u32,
     /// Expressions within each other.
@@ -156,6 +238,11 @@ pub struct TopStatement {
 /// A file.
 #[derive(Debug)]
 pub struct ModuleCode {
+    pub file: FileId,
+    /// With the statements that are like others.
+    pub parsed: Arc<Parsed>,
+    /// Which of `statements` its templates are, where others can be run as copies of them.
+    pub templates: Vec<Option<usize>>,
     pub statements: Vec<TopStatement>,
     pub slots: u32,
     /// Functions of the top level and their slots: there before anything runs.

@@ -10,8 +10,8 @@ use crate::diag::Span;
 use crate::scene::NodeKind;
 use ecow::EcoVec;
 
-impl<'p> Machine<'p> {
-    pub(super) fn collect(&mut self, items: &'p [Node], frame: Frame<'_>) -> Outcome {
+impl Machine<'_> {
+    pub(super) fn collect(&mut self, items: &[Node], frame: Frame<'_>) -> Outcome {
         self.lists.push(EcoVec::new());
         for n in items {
             self.eval(n, frame)?;
@@ -32,7 +32,7 @@ impl<'p> Machine<'p> {
         Ok(Value::None)
     }
 
-    pub(super) fn discard(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
+    pub(super) fn discard(&mut self, node: &Node, frame: Frame<'_>) -> Outcome {
         let value = self.eval(node, frame)?;
         let fault = match &value {
             Value::None => return Ok(Value::None),
@@ -85,7 +85,7 @@ impl<'p> Machine<'p> {
         }
     }
 
-    pub(super) fn group(&mut self, args: &'p [(u16, Node)], body: &'p Node, span: Span, frame: Frame<'_>) -> Outcome {
+    pub(super) fn group(&mut self, args: &[(u16, Node)], body: &Node, span: Span, frame: Frame<'_>) -> Outcome {
         let mut values = [Value::Unset, Value::Unset];
         for (i, node) in args {
             values[usize::from(*i).min(1)] = self.eval(node, frame)?;
@@ -98,7 +98,7 @@ impl<'p> Machine<'p> {
         let children = self.collected.pop().unwrap_or_default();
         let [material, name] = values;
         let material = if let Value::Material(id) = material { Some(id) } else { None };
-        let name = if let Value::Text(t) = name { Some(t.to_string()) } else { None };
+        let name = if let Value::Text(t) = name { Some(t.as_str().into()) } else { None };
         self.here = span;
         let place = super::word::Host::place(self);
         self.build.node(NodeKind::Group(children), material, name, place).map_err(|f| self.fail(f, span))

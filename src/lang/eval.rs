@@ -1,19 +1,24 @@
 //! Evaluates expressions.
 
-use super::ast::Op;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::machine::{Frame, Machine};
 use super::ops;
+use super::scalar::{Fast, Made, Other};
 use super::value::{Closure, Value};
-use super::word::described;
 use crate::diag::Span;
 use ecow::{EcoString, EcoVec};
 use std::sync::Arc;
 
-impl<'p> Machine<'p> {
-    /// The value of a piece of program.
-    pub fn eval(&mut self, node: &'p Node, frame: Frame<'_>) -> Outcome {
+impl Machine<'_> {
+    /// What isn't for the fast way.
+    #[inline(never)]
+    pub fn rare(&mut self, node: &Node, frame: Frame<'_>) -> Fast {
+        let outcome = self.any(node, frame);
+        self.leave(outcome)
+    }
+
+    fn any(&mut self, node: &Node, frame: Frame<'_>) -> Outcome {
         let span = node.span;
         match &node.code {
             Code::Const(v) => Ok(v.clone()),
@@ -23,50 +28,16 @@ impl<'p> Machine<'p> {
                 Some(v) => self.present(v, span),
                 None => Err(Stop::Reported),
             },
-            Code::Current => frame.closure.map(|c| Value::Function(c.clone())).ok_or(Stop::Reported),
-            Code::Failed => Err(Stop::Reported),
-            Code::Binary(op, ab) => {
-                let a = self.eval(&ab.0, frame)?;
-                let b = self.eval(&ab.1, frame)?;
-                self.binary(*op, &a, &b, span, ab)
+            Code::Field { of, name, .. } => {
+                let value = self.eval(of, frame)?;
+                self.field(&value, name, span)
             }
             Code::List(items) => self.list(items, span, frame),
-            Code::Block(nodes) => self.block(nodes, frame),
-            Code::If { arms, otherwise } => {
-                for (condition, body) in arms {
-                    if self.condition(condition, frame)? {
-                        return self.eval(body, frame);
-                    }
-                }
-                otherwise.as_ref().map_or(Ok(Value::None), |n| self.eval(n, frame))
-            }
-            Code::SetLocal(slot, value) => {
-                let value = self.eval(value, frame)?;
-                self.stack[frame.base + *slot as usize] = value;
-                Ok(Value::None)
-            }
-            Code::SetGlobal(slot, value) => {
-                let value = self.eval(value, frame)?;
-                self.globals[*slot as usize] = value;
-                Ok(Value::None)
-            }
             Code::CallBuiltin { word, args } => self.call_builtin(*word, args, span, frame),
-            Code::Call { function, callee, args } => self.call_known(*function, callee.as_deref(), args, span, frame),
             Code::CallValue { callee, args, hides } => {
                 let function = self.eval(callee, frame)?;
                 self.call_unknown(&function, callee.span, *hides, args, span, frame)
             }
-            Code::For(f) => self.for_(f, frame),
-            Code::While(w) => {
-                while self.condition(&w.0, frame)? {
-                    self.step(span)?;
-                    self.eval(&w.1, frame)?;
-                }
-                Ok(Value::None)
-            }
-            Code::And(ab) => Ok(Value::Bool(self.condition(&ab.0, frame)? && self.condition(&ab.1, frame)?)),
-            Code::Or(ab) => Ok(Value::Bool(self.condition(&ab.0, frame)? || self.condition(&ab.1, frame)?)),
-            Code::Not(a) => Ok(Value::Bool(!self.condition(a, frame)?)),
             Code::Negate(a) => {
                 let a = self.eval(a, frame)?;
                 ops::negate(&a, &mut self.build, span).map_err(|f| self.fail(f, span))
@@ -75,10 +46,6 @@ impl<'p> Machine<'p> {
                 let of = self.eval(&ab.0, frame)?;
                 let index = self.eval(&ab.1, frame)?;
                 self.index(&of, &index, ab)
-            }
-            Code::Field(of, name) => {
-                let value = self.eval(of, frame)?;
-                self.field(&value, name, span)
             }
             Code::Closure(function, captures) => {
                 let captures: Box<[Value]> = captures.iter().map(|c| self.capture(*c, frame)).collect();
@@ -115,6 +82,9 @@ impl<'p> Machine<'p> {
                 Ok(Value::Record(Arc::new(values.collect())))
             }
             Code::Param(p) => self.param(p, frame),
+            Code::Current => frame.closure.map(|c| Value::Function(c.clone())).ok_or(Stop::Reported),
+            Code::Failed => Err(Stop::Reported),
+            _ => self.eval(node, frame),
         }
     }
 
@@ -136,53 +106,17 @@ impl<'p> Machine<'p> {
         }
     }
 
-    #[inline]
-    fn binary(&mut self, op: Op, a: &Value, b: &Value, span: Span, ab: &'p (Node, Node)) -> Outcome {
-        if let (Value::Number(x), Value::Number(y)) = (a, b) {
-            let fast = match op {
-                Op::Add => x + y,
-                Op::Subtract => x - y,
-                Op::Multiply => x * y,
-                Op::Less => return Ok(Value::Bool(x < y)),
-                Op::Greater => return Ok(Value::Bool(x > y)),
-                _ => f64::NAN,
-            };
-            if fast.is_finite() {
-                return Ok(Value::Number(fast));
-            }
-        }
-        ops::binary(op, a, b, &mut self.build, span).map_err(|f| {
-            let span = if f.argument == Some(1) { ab.1.span } else { span };
-            self.fail(f, span)
-        })
-    }
-
-    /// The value of the last one. What is only added to the scene is independent of what comes after: a mistake in it
-    /// doesn't hide theirs.
-    fn block(&mut self, nodes: &'p [Node], frame: Frame<'_>) -> Outcome {
-        let mut value = Value::None;
-        let mut failed = false;
-        for n in nodes {
-            if self.build.is_cancelled() {
-                return Err(Stop::Cancelled);
-            }
-            if let Code::Emit(_) = n.code {
-                failed |= self.attempt(n, frame)?.is_none();
-            } else {
-                value = self.eval(n, frame)?;
-            }
-        }
-        if failed { Err(Stop::Reported) } else { Ok(value) }
-    }
-
     /// Evaluates what others don't depend on: a mistake is reported and the state is as before, so that others are found too.
-    /// `None` where there was one.
-    pub fn attempt(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Option<Value>, Stop> {
+    /// False where there was one; else `put` is given the value.
+    #[inline]
+    pub fn attempt(&mut self, node: &Node, frame: Frame<'_>, put: impl FnOnce(&mut Self, Made)) -> Result<bool, Stop> {
         let before = (self.stack.len(), self.calls.len(), self.nesting, self.collected.len(), self.lists.len());
-        match self.eval(node, frame) {
-            Ok(value) => return Ok(Some(value)),
+        if let Ok(()) = self.eval_into(node, frame, put) {
+            return Ok(true);
+        }
+        match self.take() {
             Err(Stop::Error(d)) if self.errors.len() <= self.limits.errors => self.errors.push(*d),
-            Err(Stop::Reported) => {}
+            Ok(_) | Err(Stop::Reported) => {}
             Err(stop) => return Err(stop),
         }
         self.stack.truncate(before.0);
@@ -190,36 +124,15 @@ impl<'p> Machine<'p> {
         self.nesting = before.2;
         self.collected.truncate(before.3);
         self.lists.truncate(before.4);
-        Ok(None)
+        Ok(false)
     }
 
-    /// Whether a condition holds.
-    fn condition(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<bool, Stop> {
-        match self.eval(node, frame)? {
-            Value::Bool(b) => Ok(b),
-            other => {
-                let got = described(&other, &self.build);
-                let fault = Fault::new(format!("a condition must be true or false, got {got}"));
-                let fault = match other {
-                    Value::Number(_) => fault.label("compare it with something, as in `n > 0`"),
-                    Value::Angle(_) => fault.label("compare it with something, as in `a > 0deg`"),
-                    _ => fault,
-                };
-                Err(self.fail(fault, node.span))
-            }
-        }
-    }
-
-    fn list(&mut self, items: &'p [Node], span: Span, frame: Frame<'_>) -> Outcome {
-        if let [x, y, z] = items {
-            let (x, y, z) = (self.eval(x, frame)?, self.eval(y, frame)?, self.eval(z, frame)?);
-            if let (Value::Number(x), Value::Number(y), Value::Number(z)) = (&x, &y, &z) {
-                return Ok(Value::Vec3([*x, *y, *z]));
-            }
-            for v in [&x, &y, &z] {
-                self.hold(v, span)?;
-            }
-            return Ok(Value::List(EcoVec::from([x, y, z])));
+    fn list(&mut self, items: &[Node], span: Span, frame: Frame<'_>) -> Outcome {
+        if let Some(items) = items.as_array() {
+            return match self.vector(items, span, frame) {
+                Ok(v) => Ok(Value::Vec3(v)),
+                Err(Other) => self.take(),
+            };
         }
         let mut out = EcoVec::with_capacity(items.len());
         for n in items {
@@ -233,29 +146,7 @@ impl<'p> Machine<'p> {
         Ok(Value::List(out))
     }
 
-    fn for_(&mut self, f: &'p ForCode, frame: Frame<'_>) -> Outcome {
-        let over = self.eval(&f.over, frame)?;
-        if !matches!(over, Value::Range(_) | Value::List(_) | Value::Vec3(_)) {
-            let got = described(&over, &self.build);
-            let fault = Fault::new(format!("`for` goes through a list or a range, got {got}"));
-            let fault = if let Value::Number(_) = over { fault.label("for a count write `0..n`") } else { fault };
-            return Err(self.fail(fault, f.over.span));
-        }
-        let slot = frame.base + f.slot as usize;
-        for i in 0..over.length().unwrap_or(0) {
-            self.step(f.over.span)?;
-            self.stack[slot] = over.item(i).unwrap_or(Value::None);
-            if let Some(guard) = &f.guard
-                && !self.condition(guard, frame)?
-            {
-                continue;
-            }
-            self.eval(&f.body, frame)?;
-        }
-        Ok(Value::None)
-    }
-
-    fn text(&mut self, parts: &'p [TextCode], span: Span, frame: Frame<'_>) -> Outcome {
+    fn text(&mut self, parts: &[TextCode], span: Span, frame: Frame<'_>) -> Outcome {
         let mut out = EcoString::new();
         let most = self.limits.text_length;
         for p in parts {

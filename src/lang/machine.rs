@@ -5,6 +5,7 @@ use super::catalog;
 use super::code::*;
 use super::fault::{Fault, Outcome, Stop};
 use super::limits::Limits;
+use super::repeat::Repeats;
 use super::request::Param;
 use super::value::{Closure, FunctionId, Value};
 use super::word::Host;
@@ -12,6 +13,7 @@ use crate::diag::{CallFrame, Diagnostic, Diagnostics, Place, Span};
 use crate::scene::NodeId;
 use ecow::EcoVec;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Runs a program.
@@ -25,6 +27,8 @@ pub struct Machine<'p> {
     pub calls: Vec<Call>,
     /// Expressions within each other over all running calls.
     pub nesting: usize,
+    /// What the part that has just run gave, where that is no scalar.
+    pub other: Outcome,
     /// What the scene blocks around have been given.
     pub collected: Vec<Vec<NodeId>>,
     /// The lists being made.
@@ -83,34 +87,50 @@ impl<'p> Machine<'p> {
         let base = self.stack.len();
         self.stack.resize(base + module.slots as usize, Value::Unset);
         self.collected.push(Vec::new());
+        let slots = base..base + module.slots as usize;
+        let mut repeats = Repeats::new(module, &self.sources.get(module.file).text);
         let mut go_on = true;
-        for s in &module.statements {
+        let mut statements = module.statements.iter();
+        while go_on {
+            let next = statements.as_slice().first();
+            // What is like a statement is for the scene, as that is.
+            let at = next.map_or(u32::MAX, |s| s.node.span.start);
+            let (node, binds) = match (main.then(|| repeats.next_before(at)).flatten(), next) {
+                (Some(node), _) => (node, &[][..]),
+                (None, Some(s)) => {
+                    statements.next();
+                    if s.for_scene && !main {
+                        continue;
+                    }
+                    (&s.node, &s.binds[..])
+                }
+                (None, None) => break,
+            };
             if self.build.is_cancelled() {
                 return false;
             }
-            if s.for_scene && !main {
-                continue;
-            }
-            if let Err(stop) = self.eval(&s.node, Frame { base, closure: None }) {
-                for slot in &s.binds {
-                    self.globals[*slot as usize] = Value::Poison;
-                }
-                go_on = self.report(stop, s.node.span);
-                self.stack.truncate(base + module.slots as usize);
-                self.calls.clear();
-                self.nesting = 0;
-                self.collected.truncate(1);
-                self.lists.clear();
-                if !go_on {
-                    break;
-                }
-            }
+            go_on = self.run_statement(node, binds, slots.clone());
         }
         self.stack.truncate(base);
         let roots = self.collected.pop().unwrap_or_default();
         if main {
             self.build.scene.roots = roots;
         }
+        go_on
+    }
+
+    /// Runs an outermost statement, whose names are in `slots`; false where a budget is used up.
+    fn run_statement(&mut self, node: &Node, binds: &[u32], slots: Range<usize>) -> bool {
+        let Err(stop) = self.eval(node, Frame { base: slots.start, closure: None }) else { return true };
+        for slot in binds {
+            self.globals[*slot as usize] = Value::Poison;
+        }
+        let go_on = self.report(stop, node.span);
+        self.stack.truncate(slots.end);
+        self.calls.clear();
+        self.nesting = 0;
+        self.collected.truncate(1);
+        self.lists.clear();
         go_on
     }
 

@@ -113,13 +113,13 @@ fn extent(shape: &Shape) -> ([DVec3; 4], f64, f64) {
         Shape::Cone { from, to, r, top, .. } => tube(*from, *to, Real::max(*r, *top)),
         Shape::Torus { at, r, tube, .. } => ([*at; 4], *tube, r + tube),
         Shape::Triangle { points, .. } => {
-            let (lo, hi) = edges(points);
-            let [a, b, c] = *points;
+            let (lo, hi) = edges(&points[..]);
+            let [a, b, c] = **points;
             ([a, b, c, c], lo, hi)
         }
         Shape::Tetrahedron { points } => {
-            let (lo, hi) = edges(points);
-            (*points, lo, hi)
+            let (lo, hi) = edges(&points[..]);
+            (**points, lo, hi)
         }
     }
 }

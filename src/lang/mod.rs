@@ -16,21 +16,26 @@ mod eval;
 mod expected;
 mod fault;
 mod finish;
+mod flow;
+mod formula;
 pub mod highlight;
 mod limits;
 mod load;
 mod machine;
 mod measure;
 mod memory;
+mod operation;
 mod ops;
 mod param;
 mod parse;
 mod picture;
 mod property;
 mod reference;
+mod repeat;
 pub mod request;
 mod resolve;
 mod running;
+mod scalar;
 mod scan;
 mod scope;
 mod suggest;
@@ -147,7 +152,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
     let mut resolver = Resolver::default();
     let last = loader.modules.len().saturating_sub(1);
     for (i, m) in loader.modules.iter().enumerate() {
-        resolver.file(&m.parsed.statements, &m.imports, i == last, cancel);
+        resolver.file(m, &loader.sources.get(m.file).text, i == last, cancel);
     }
     let nodes = set_nodes(request, &mut loader.sources, &mut resolver);
     errors.append(&mut resolver.errors);
@@ -171,6 +176,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
         stack: Vec::new(),
         calls: Vec::new(),
         nesting: 0,
+        other: Ok(Value::None),
         collected: Vec::new(),
         lists: Vec::new(),
         text_bytes: 0,

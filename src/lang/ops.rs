@@ -48,16 +48,21 @@ pub fn numbers(op: Op, a: f64, b: f64) -> Result<f64, Box<Fault>> {
         Op::Subtract => a - b,
         Op::Multiply => a * b,
         Op::Divide if b == 0.0 => return Err(Fault::new("division by 0").label("this is 0 here").on(1)),
-        Op::Divide => a / b,
-        // The sign of the result is that of `b`, so that a pattern goes on below 0.
         Op::Remainder if b == 0.0 => {
             return Err(Fault::new("remainder of a division by 0").label("this is 0 here").on(1));
         }
-        Op::Remainder => a - b * (a / b).floor(),
+        Op::Divide | Op::Remainder => quotient(op, a, b),
         Op::Power => fun::pow(a, b),
         _ => f64::NAN,
     };
     if r.is_finite() { Ok(r) } else { Err(not_finite(op, a, b)) }
+}
+
+/// `a / b`, or what is left of `a`: its sign is that of `b`, so that a pattern goes on below 0. `b` isn't 0.
+#[inline]
+pub fn quotient(op: Op, a: f64, b: f64) -> f64 {
+    let q = a / b;
+    if op == Op::Divide { q } else { a - b * q.floor() }
 }
 
 #[cold]

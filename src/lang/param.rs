@@ -10,9 +10,9 @@ use super::value::{Value, number_text};
 use super::word::described;
 use crate::diag::Span;
 
-impl<'p> Machine<'p> {
+impl Machine<'_> {
     /// Evaluates a declaration: the default must fit it too.
-    pub fn param(&mut self, p: &'p ParamCode, frame: Frame<'_>) -> Outcome {
+    pub fn param(&mut self, p: &ParamCode, frame: Frame<'_>) -> Outcome {
         let default = self.eval(&p.default, frame)?;
         let kind = self.param_kind(p, &default, frame)?;
         self.fits(&kind, p, &default, p.default.span)?;
@@ -47,7 +47,7 @@ impl<'p> Machine<'p> {
     fn set_value(
         &mut self,
         kind: &ParamKind,
-        node: Result<&'p Node, crate::diag::Diagnostic>,
+        node: Result<&Node, crate::diag::Diagnostic>,
         raw: &str,
         frame: Frame<'_>,
     ) -> Outcome {
@@ -65,7 +65,7 @@ impl<'p> Machine<'p> {
         }
     }
 
-    fn param_kind(&mut self, p: &'p ParamCode, default: &Value, frame: Frame<'_>) -> Result<ParamKind, Stop> {
+    fn param_kind(&mut self, p: &ParamCode, default: &Value, frame: Frame<'_>) -> Result<ParamKind, Stop> {
         if let Some(node) = &p.choices {
             let choices = self.eval(node, frame)?;
             let texts: Option<Vec<String>> = choices.items().and_then(|items| {
@@ -97,7 +97,7 @@ impl<'p> Machine<'p> {
         })
     }
 
-    fn param_range(&mut self, default: &Value, node: &'p Node, frame: Frame<'_>) -> Result<(f64, f64), Stop> {
+    fn param_range(&mut self, default: &Value, node: &Node, frame: Frame<'_>) -> Result<(f64, f64), Stop> {
         let angle = matches!(default, Value::Angle(_));
         let example = if angle { "as in `in 0deg..=90deg`" } else { "as in `in 1..=10`" };
         let fault = match self.param_ends(node, frame)? {
@@ -122,10 +122,12 @@ impl<'p> Machine<'p> {
     }
 
     /// The ends of a range and whether it includes the last; as a value, a range has no unit.
-    fn param_ends(&mut self, node: &'p Node, frame: Frame<'_>) -> Result<Option<(Value, Value, bool)>, Stop> {
-        if let Code::Binary(op @ (Op::Range | Op::RangeInclusive), ends) = &node.code {
-            let (a, b) = (self.eval(&ends.0, frame)?, self.eval(&ends.1, frame)?);
-            return Ok(Some((a, b, *op == Op::RangeInclusive)));
+    fn param_ends(&mut self, node: &Node, frame: Frame<'_>) -> Result<Option<(Value, Value, bool)>, Stop> {
+        if let Code::Binary(ends) = &node.code
+            && let Op::Range | Op::RangeInclusive = ends.op
+        {
+            let (a, b) = (self.eval(&ends.a, frame)?, self.eval(&ends.b, frame)?);
+            return Ok(Some((a, b, ends.op == Op::RangeInclusive)));
         }
         Ok(match self.eval(node, frame)? {
             Value::Range(r) => Some((Value::Number(r.from), Value::Number(r.to), r.inclusive)),

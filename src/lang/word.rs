@@ -91,6 +91,8 @@ pub(super) enum Run {
     Call(fn(host: &mut dyn Host, args: &[Value]) -> Outcome),
     /// A number from a number: the fast way of the most used words.
     Number(fn(f64) -> f64),
+    /// A number from an angle in degrees, likewise.
+    Angle(fn(f64) -> f64),
     /// The word alone is a value.
     Constant(fn() -> Value),
     /// The evaluator knows it: it takes names or a block of its own.

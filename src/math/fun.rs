@@ -8,7 +8,7 @@ pub fn sin_deg(degrees: f64) -> f64 {
     if !degrees.is_finite() {
         return f64::NAN;
     }
-    let d = degrees % 360.0; // exact: the remainder of two floats is a float
+    let d = within_a_turn(degrees);
     let (d, sign) = if d < 0.0 { (-d, -1.0) } else { (d, 1.0) };
     let (d, sign) = if d >= 180.0 { (d - 180.0, -sign) } else { (d, sign) };
     let d = if d > 90.0 { 180.0 - d } else { d };
@@ -20,7 +20,7 @@ pub fn cos_deg(degrees: f64) -> f64 {
     if !degrees.is_finite() {
         return f64::NAN;
     }
-    let d = (degrees % 360.0).abs();
+    let d = within_a_turn(degrees).abs();
     let d = if d > 180.0 { 360.0 - d } else { d };
     if d > 90.0 { -quadrant_cos(180.0 - d) } else { quadrant_cos(d) }
 }
@@ -54,6 +54,12 @@ pub fn atan_deg(x: f64) -> f64 {
 fn returning(d: f64, f: fn(f64) -> f64, x: f64) -> f64 {
     let (up, down) = (d.next_up(), d.next_down());
     [d, up, down, up.next_up(), down.next_down()].into_iter().find(|d| f(*d) == x).unwrap_or(d)
+}
+
+/// What is left without whole turns: exact, for the remainder of two floats is a float.
+fn within_a_turn(degrees: f64) -> f64 {
+    // Mostly there is nothing to take away, and a remainder takes as long as a sine.
+    if degrees.abs() < 360.0 { degrees } else { degrees % 360.0 }
 }
 
 fn sign_or_zero(x: f64) -> f64 {

@@ -213,7 +213,7 @@ mod tests {
                 top: 0.1,
                 caps: true,
             }),
-            NodeKind::Shape(Shape::Tetrahedron { points }),
+            NodeKind::Shape(Shape::Tetrahedron { points: Box::new(points) }),
             NodeKind::Shape(Shape::Plane { through: v(0.0, -0.4, 0.0), normal: v(0.1, 1.0, 0.05) }),
             NodeKind::Light(Light { at: v(4.0, 6.0, 5.0), color: crate::scene::Color::WHITE, power: 1.0 }),
         ];
@@ -222,7 +222,7 @@ mod tests {
             let child = NodeId(scene.nodes.len() as u32);
             scene.nodes.push(Node { kind, material: None, name: None, place: place.clone() });
             let turn = Affine::rotation_about(v(0.2, 1.0, 0.4), 7.0);
-            let kind = NodeKind::Transformed { child, parent_from_child: turn };
+            let kind = NodeKind::Transformed { child, parent_from_child: Box::new(turn) };
             scene.roots.push(NodeId(scene.nodes.len() as u32));
             scene.nodes.push(Node { kind, material: None, name: None, place });
         }

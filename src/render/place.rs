@@ -105,9 +105,10 @@ pub fn place(shape: &Shape, world_from_object: &Affine) -> Vec<Placed> {
             vec![framed(kind, axis_frame(*at, *axis), Some([[0.0; 3], [out, *tube, out]]), world_from_object)]
         }
         Shape::Triangle { points, normals } => {
-            vec![triangle(*points, *normals, world_from_object)]
+            vec![triangle(**points, normals.as_deref().copied(), world_from_object)]
         }
-        Shape::Tetrahedron { points: [a, b, c, d] } => {
+        Shape::Tetrahedron { points } => {
+            let [a, b, c, d] = &**points;
             // Corners of each face go round counter-clockwise seen from outside.
             let outward = (*b - *a).cross(*c - *a).dot(*d - *a) < 0.0;
             let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
@@ -353,7 +354,7 @@ mod tests {
     fn tetrahedron_faces_look_outwards_whatever_the_order_of_corners() {
         let p = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         for points in [p, [p[1], p[0], p[2], p[3]]] {
-            for face in place(&Shape::Tetrahedron { points }, &Affine::IDENTITY) {
+            for face in place(&Shape::Tetrahedron { points: Box::new(points) }, &Affine::IDENTITY) {
                 let Form::Triangle(v, n, _) = face.form else { panic!() };
                 let from_middle = DVec3::from_array(v[0]) - DVec3::splat(0.2);
                 assert!(from_middle.dot(DVec3::from_array(n)) > 0.0);

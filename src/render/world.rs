@@ -412,8 +412,8 @@ fn middle(shape: &crate::scene::Shape) -> ([Dd; 3], f64) {
         Disc { at, r, .. } => (exactly(at), *r),
         Cylinder { from, to, .. } | Cone { from, to, .. } => of_points(&[*from, *to]),
         Torus { at, tube, .. } => (exactly(at), *tube),
-        Triangle { points, .. } => of_points(points),
-        Tetrahedron { points } => of_points(points),
+        Triangle { points, .. } => of_points(&points[..]),
+        Tetrahedron { points } => of_points(&points[..]),
     };
     (centre, if half > 0.0 { half } else { 0.5 })
 }

@@ -33,7 +33,7 @@ pub struct Scene {
     pub settings: Settings,
 }
 
-/// A part of the scene and the text that made it.
+/// A part of the scene and the text that made it. There may be millions: what only few have stands elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// What it is.
@@ -41,7 +41,7 @@ pub struct Node {
     /// Its material; `None` takes the one around it. Ignored for lights.
     pub material: Option<MaterialId>,
     /// What the author called it.
-    pub name: Option<String>,
+    pub name: Option<Box<str>>,
     /// The text and the calls.
     pub place: Place,
 }
@@ -60,7 +60,7 @@ pub enum NodeKind {
         /// What is moved.
         child: NodeId,
         /// Where it goes.
-        parent_from_child: Affine,
+        parent_from_child: Box<Affine>,
     },
 }
 

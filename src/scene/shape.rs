@@ -75,14 +75,14 @@ pub enum Shape {
     /// A flat triangle; its corners aren't on one line.
     Triangle {
         /// Corners.
-        points: [DVec3; 3],
+        points: Box<[DVec3; 3]>,
         /// Shading normals at the corners, for a smooth look.
-        normals: Option<[DVec3; 3]>,
+        normals: Option<Box<[DVec3; 3]>>,
     },
     /// The four faces between four points that aren't in one plane.
     Tetrahedron {
         /// Corners.
-        points: [DVec3; 4],
+        points: Box<[DVec3; 4]>,
     },
 }
 

@@ -252,7 +252,7 @@ fn placed(scene: &Scene, map: &Affine) -> Scene {
     let roots = std::mem::take(&mut scene.roots);
     for child in roots {
         let place = scene.node(child).place.clone();
-        let kind = NodeKind::Transformed { child, parent_from_child: *map };
+        let kind = NodeKind::Transformed { child, parent_from_child: Box::new(*map) };
         scene.nodes.push(Node { kind, material: None, name: None, place });
         scene.roots.push(NodeId(scene.nodes.len() as u32 - 1));
     }

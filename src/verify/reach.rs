@@ -73,8 +73,8 @@ fn shape_lengths(shape: &Shape, scale: [f64; 2], lengths: &mut Lengths) {
         Shape::Cylinder { from, to, r, .. } => (&[*from, *to], &[*r]),
         Shape::Cone { from, to, r, top, .. } => (&[*from, *to], &[*r, *top]),
         Shape::Torus { at, r, tube, .. } => (&[*at], &[*r, *tube]),
-        Shape::Triangle { points, .. } => (points, &[]),
-        Shape::Tetrahedron { points } => (points, &[]),
+        Shape::Triangle { points, .. } => (&points[..], &[]),
+        Shape::Tetrahedron { points } => (&points[..], &[]),
     };
     lengths.points(points, scale);
     sizes.iter().for_each(|s| lengths.size(*s, scale));

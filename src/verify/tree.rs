@@ -137,24 +137,24 @@ fn scene() -> Scene {
             5 => Shape::Cone { from: a, to: a + axis * 2.0 + size, r, top: 0.0, caps: true },
             6 => Shape::Torus { at: a, r, tube: 0.25 * r, axis },
             7 if (b - a).cross(c - a).dot(d - a) != 0.0 => {
-                Shape::Tetrahedron { points: [a, b, c, d].map(|p| a + (p - a) * 0.25) }
+                Shape::Tetrahedron { points: Box::new([a, b, c, d].map(|p| a + (p - a) * 0.25)) }
             }
             _ => Shape::Triangle {
-                points: [a, a + axis * 3.0, a + DVec3::new(axis.z, axis.x, axis.y) * 2.0],
+                points: Box::new([a, a + axis * 3.0, a + DVec3::new(axis.z, axis.x, axis.y) * 2.0]),
                 normals: None,
             },
         };
         let node = add(NodeKind::Shape(shape));
         let stretch = Affine::translation(a * 0.5).compose(&Affine::scaling(DVec3::new(0.5, 0.25, 0.75)));
         roots.push(match i % 5 {
-            0 => add(NodeKind::Transformed { child: node, parent_from_child: stretch }),
+            0 => add(NodeKind::Transformed { child: node, parent_from_child: Box::new(stretch) }),
             _ => node,
         });
         if i % 4 == 0 {
             // Once more, and beside it by a whole number: faces of both coincide.
             let beside = Affine::translation(axis);
             roots.push(node);
-            roots.push(add(NodeKind::Transformed { child: node, parent_from_child: beside }));
+            roots.push(add(NodeKind::Transformed { child: node, parent_from_child: Box::new(beside) }));
         }
     }
     scene.roots = roots;

@@ -64,7 +64,7 @@ impl Builder {
     /// A shape that stands somewhere else than where it was made.
     pub fn placed(&mut self, shape: Shape, material: MaterialId, map: Affine) {
         let child = self.node(NodeKind::Shape(shape), Some(material));
-        let id = self.node(NodeKind::Transformed { child, parent_from_child: map }, None);
+        let id = self.node(NodeKind::Transformed { child, parent_from_child: Box::new(map) }, None);
         self.scene.roots.push(id);
     }
     pub fn light(&mut self, at: DVec3) {
@@ -122,7 +122,7 @@ pub fn seed(s: f64, by: DVec3) -> Scene {
     let c = b.color(0.9, 0.8, 0.2);
     let m = b.phong(c, 0.5, 0.0, 0.0);
     let points = [at(-3.0, -15.0, -66.0), at(4.0, -15.0, -68.0), at(0.5, -15.0, -74.0), at(0.7, -8.0, -69.0)];
-    b.shape(Shape::Tetrahedron { points }, m);
+    b.shape(Shape::Tetrahedron { points: Box::new(points) }, m);
 
     b.scene.settings.max_depth = 5;
     b.scene

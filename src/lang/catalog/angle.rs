@@ -15,7 +15,7 @@ pub const WORDS: &[Word] = &[
         params: &[ANGLE],
         doc: "The sine of an angle.",
         example: "let half = sin(30deg)     // → 0.5\nfor i in 0..40 { sphere(at: [i / 4, sin(i * 18deg), 0], r: 0.15) }\ncamera(from: [5, 0, 14], at: [5, 0, 0])\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| Ok(Value::Number(fun::sin_deg(a.number(0))))),
+        run: Run::Angle(fun::sin_deg),
     },
     Word {
         name: "cos",
@@ -23,7 +23,7 @@ pub const WORDS: &[Word] = &[
         params: &[ANGLE],
         doc: "The cosine of an angle.",
         example: "let half = cos(60deg)     // → 0.5\nfor i in 0..12 { sphere(at: [3 * cos(i * 30deg), 3 * sin(i * 30deg), 0], r: 0.5) }\nlight(at: [4, 8, 6])",
-        run: Run::Call(|_, a| Ok(Value::Number(fun::cos_deg(a.number(0))))),
+        run: Run::Angle(fun::cos_deg),
     },
     Word {
         name: "tan",

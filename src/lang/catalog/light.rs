@@ -21,7 +21,7 @@ pub const WORDS: &[Word] = &[Word {
     run: Run::Call(|host, a| {
         let light = Light { at: a.vec3(0), color: a.level(1), power: a.number(2) };
         amount("color * power", &Value::Color(light.color * light.power), host.build()).map_err(|f| f.on(2))?;
-        let name = a.given(3).then(|| a.text(3).to_owned());
+        let name = a.given(3).then(|| a.text(3).into());
         let place = host.place();
         Ok(host.build().node(NodeKind::Light(light), None, name, place)?)
     }),

@@ -152,7 +152,7 @@ pub const WORDS: &[Word] = &[
 fn make(host: &mut dyn Host, a: &[Value], shape: Shape) -> Outcome {
     let n = a.len();
     let material = if let Some(Value::Material(id)) = a.get(n - 2) { Some(*id) } else { None };
-    let name = a.given(n - 1).then(|| a.text(n - 1).to_owned());
+    let name = a.given(n - 1).then(|| a.text(n - 1).into());
     let place = host.place();
     Ok(host.build().node(NodeKind::Shape(shape), material, name, place)?)
 }
@@ -268,7 +268,7 @@ fn triangle(host: &mut dyn Host, a: &[Value]) -> Outcome {
     if edges(&points).is_none_or(|e| e[0].cross(e[1]).length() <= FLAT) {
         return Err(Fault::new("the corners of this triangle are on one line").on(0).into());
     }
-    make(host, a, Shape::Triangle { points, normals: a.points::<3>(1) })
+    make(host, a, Shape::Triangle { points: Box::new(points), normals: a.points::<3>(1).map(Box::new) })
 }
 
 fn tetrahedron(host: &mut dyn Host, a: &[Value]) -> Outcome {
@@ -287,5 +287,5 @@ fn tetrahedron(host: &mut dyn Host, a: &[Value]) -> Outcome {
     if edges(&points).is_none_or(|e| e[0].cross(e[1]).dot(e[2]).abs() <= FLAT) {
         return Err(Fault::new("the corners of this tetrahedron are in one plane").into());
     }
-    make(host, a, Shape::Tetrahedron { points })
+    make(host, a, Shape::Tetrahedron { points: Box::new(points) })
 }

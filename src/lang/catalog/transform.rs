@@ -80,9 +80,12 @@ pub const WORDS: &[Word] = &[
 fn transform(host: &mut dyn Host, a: &[Value], parent_from_child: Affine) -> Outcome {
     let place = host.place();
     Ok(match a.first() {
-        Some(Value::Node(child)) => {
-            host.build().node(NodeKind::Transformed { child: *child, parent_from_child }, None, None, place)?
-        }
+        Some(Value::Node(child)) => host.build().node(
+            NodeKind::Transformed { child: *child, parent_from_child: Box::new(parent_from_child) },
+            None,
+            None,
+            place,
+        )?,
         Some(Value::Pattern(child)) => {
             host.build().pattern(PatternKind::Transformed { child: *child, parent_from_child }, place.span)?
         }

@@ -2,6 +2,7 @@
 
 mod builder;
 mod expr;
+pub mod like;
 mod literal;
 mod recover;
 mod statement;
@@ -10,6 +11,7 @@ use super::ast::*;
 use super::{scan, syntax};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
 use builder::Builder;
+use like::{Like, Likenesses, Template};
 use pest::Parser as _;
 use recover::{bound_name, recover};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -26,13 +28,18 @@ const EDITION: &str = "1";
 pub struct Parsed {
     /// Those with errors too, so that their names aren't unknown later.
     pub statements: Vec<Statement>,
+    /// Further ones, in the order of the text.
+    pub likes: Vec<Like>,
+    /// What those are like, in the order of the text.
+    pub templates: Vec<Template>,
     pub errors: Diagnostics,
 }
 
 /// Parses a whole file; only a part of it where `cancel` is set meanwhile.
 pub fn parse(file: FileId, text: &str, cancel: &AtomicBool) -> Parsed {
     let (prepared, mut errors) = scan::prepare(file, text);
-    let mut statements = Vec::new();
+    let (mut statements, mut likes, mut templates) = (Vec::new(), Vec::new(), Vec::new());
+    let mut likenesses = Likenesses::default();
     for (i, piece) in prepared.statements.iter().enumerate() {
         if cancel.load(Relaxed) {
             break;
@@ -45,15 +52,37 @@ pub fn parse(file: FileId, text: &str, cancel: &AtomicBool) -> Parsed {
         }
         let broken = || Statement { kind: StatementKind::Broken { name: bound_name(source) }, span };
         if piece.broken {
+            likenesses.clear();
             statements.push(broken());
             continue;
         }
-        match recover(file, source, piece.range.start, &mut errors, cancel) {
-            Some(s) => statements.push(s),
-            None => statements.push(broken()),
+        // Where the two differ there are comments.
+        let outline =
+            text.get(piece.range.clone()).filter(|t| *t == source).and_then(|_| likenesses.look(text, source));
+        if let Some((_, Some(template))) = outline {
+            likes.push(Like { template, start: span.start, end: span.end });
+            continue;
         }
+        let before = errors.len();
+        let statement = recover(file, source, piece.range.start, &mut errors, cancel).unwrap_or_else(broken);
+        match (&statement.kind, outline) {
+            (StatementKind::Expr(_), Some((outline, None))) if errors.len() == before => {
+                likenesses.add(outline, templates.len() as u32, piece.range.clone());
+                templates.push(Template { statement: statements.len(), range: piece.range.clone() });
+            }
+            (StatementKind::Expr(_), _) => {}
+            _ => likenesses.clear(),
+        }
+        statements.push(statement);
     }
-    Parsed { statements, errors }
+    Parsed { statements, likes, templates, errors }
+}
+
+/// Parses an outermost statement that was found to be like another: `text` is all of its file, without comments in `range`.
+pub fn parse_like(file: FileId, text: &str, like: &Like, cancel: &AtomicBool) -> (Option<Statement>, Diagnostics) {
+    let mut errors = Vec::new();
+    let source = text.get(like.start as usize..like.end as usize).unwrap_or("");
+    (recover(file, source, like.start as usize, &mut errors, cancel), errors)
 }
 
 /// Parses a single expression: a value of `--set`.

@@ -134,7 +134,16 @@ impl Resolver {
             self.args_alone(args);
             return Code::Failed;
         }
-        self.align_builtin(id, args, span).map_or(Code::Failed, |args| Code::CallBuiltin { word: id, args })
+        let Some(args) = self.align_builtin(id, args, span) else { return Code::Failed };
+        let function = match word.run {
+            Run::Number(f) => Function1::OfNumber(f),
+            Run::Angle(f) => Function1::OfAngle(f),
+            _ => return Code::CallBuiltin { word: id, args },
+        };
+        match <Box<[_; 1]>>::try_from(args) {
+            Ok(args) => Code::Apply(Box::new(Apply { word: id, function, args: *args })),
+            Err(args) => Code::CallBuiltin { word: id, args },
+        }
     }
 
     pub(super) fn align_builtin(&mut self, id: BuiltinId, args: &[Arg], span: Span) -> Option<Box<[(u16, Node)]>> {

@@ -6,6 +6,7 @@ use crate::lang::ast::*;
 use crate::lang::call::NAMELESS;
 use crate::lang::catalog;
 use crate::lang::code::*;
+use crate::lang::formula::with_formula;
 use crate::lang::scope::Kind;
 use crate::lang::value::Value;
 use ecow::EcoString;
@@ -21,7 +22,7 @@ impl Resolver {
             ExprKind::Block(b) => return self.block(b, mode),
             _ => {}
         }
-        let value = node(self.value(e, mode));
+        let value = with_formula(node(self.value(e, mode)));
         match mode {
             Mode::Value => value,
             Mode::Scene => node(Code::Emit(Box::new(value))),
@@ -58,7 +59,10 @@ impl Resolver {
             ExprKind::Not(a) => Code::Not(self.boxed(a)),
             ExprKind::Binary { op: Op::And, a, b, .. } => Code::And(self.pair(a, b)),
             ExprKind::Binary { op: Op::Or, a, b, .. } => Code::Or(self.pair(a, b)),
-            ExprKind::Binary { op, a, b, .. } => Code::Binary(*op, self.pair(a, b)),
+            ExprKind::Binary { op, a, b, .. } => {
+                let (a, b) = *self.pair(a, b);
+                Code::Binary(Box::new(Operation { op: *op, a, b }))
+            }
             ExprKind::Index { of, index } => Code::Index(self.pair(of, index)),
             ExprKind::Field { of, field } => self.field(of, field),
             ExprKind::Call { callee, args } => self.call(callee, args, mode),

@@ -9,9 +9,13 @@ mod statement;
 use super::ast::*;
 use super::catalog;
 use super::code::*;
+use super::load::Module;
+use super::parse::like::Like;
+use super::parse::parse_like;
+use super::repeat::can_be_copied;
 use super::scope::{At, Binding, Kind, Level, Scopes};
 use super::value::{FunctionId, Value};
-use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
 use ecow::EcoString;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -66,7 +70,9 @@ pub struct Resolver {
 impl Resolver {
     /// Adds a file. `imports` has one entry an `import` statement: the module's index, or `None` where it couldn't be read.
     /// Only a part of it is added where `cancel` is set meanwhile.
-    pub fn file(&mut self, statements: &[Statement], imports: &[Option<usize>], main: bool, cancel: &AtomicBool) {
+    pub fn file(&mut self, module: &Module, text: &str, main: bool, cancel: &AtomicBool) {
+        let (parsed, imports) = (&module.parsed, &module.imports);
+        let statements = &parsed.statements;
         self.scopes = Scopes::default();
         self.ended.clear();
         self.main = main;
@@ -74,14 +80,47 @@ impl Resolver {
         self.scopes.top().enter();
         let functions = self.declare(statements, imports, cancel);
         let mut out = Vec::new();
-        for s in statements.iter().take_while(|_| !cancel.load(Relaxed)) {
-            if let Some(t) = self.top_statement(s) {
-                out.push(t);
+        let mut templates = Vec::new();
+        let mut likes = parsed.likes.iter().peekable();
+        for (i, s) in statements.iter().enumerate().take_while(|_| !cancel.load(Relaxed)) {
+            while let Some(like) = likes.next_if(|like| like.start < s.span.start) {
+                out.extend(self.like(like, &templates, module.file, text, cancel));
             }
+            let before = self.errors.len();
+            let top = self.top_statement(s);
+            if let Some(template) = parsed.templates.get(templates.len())
+                && template.statement == i
+            {
+                let is_good = self.errors.len() == before;
+                let can_be = |t: &&TopStatement| t.node.span.range() == template.range && can_be_copied(&t.node, text);
+                templates.push(top.as_ref().filter(|_| is_good).filter(can_be).map(|_| out.len()));
+            }
+            out.extend(top);
+        }
+        for like in likes {
+            out.extend(self.like(like, &templates, module.file, text, cancel));
         }
         let level = self.scopes.levels.pop().unwrap_or_default();
         self.exports.push(module::exports(statements, &level));
-        self.program.modules.push(ModuleCode { statements: out, slots: level.slots, functions });
+        let (file, parsed, slots) = (module.file, parsed.clone(), level.slots);
+        self.program.modules.push(ModuleCode { file, parsed, templates, statements: out, slots, functions });
+    }
+
+    /// A statement that is like another, unless it can be run as a copy of that.
+    fn like(
+        &mut self,
+        like: &Like,
+        templates: &[Option<usize>],
+        file: FileId,
+        text: &str,
+        cancel: &AtomicBool,
+    ) -> Option<TopStatement> {
+        if cancel.load(Relaxed) || templates.get(like.template as usize).is_some_and(Option::is_some) {
+            return None;
+        }
+        let (statement, errors) = parse_like(file, text, like, cancel);
+        self.errors.extend(errors);
+        self.top_statement(&statement?)
     }
 
     /// An expression that sees the built-in words only; an unknown word alone is a text.
@@ -141,7 +180,8 @@ impl Resolver {
             .map(|p| ParamSlot { name: p.name.name.clone(), required: p.default.is_none(), default: None })
             .collect();
         let body = Node { code: Code::Failed, span: f.body.span };
-        self.program.functions.push(FnCode { name: name.clone(), params, slots: 0, depth: 1, body });
+        let has_defaults = f.params.iter().any(|p| p.default.is_some());
+        self.program.functions.push(FnCode { name: name.clone(), params, has_defaults, slots: 0, depth: 1, body });
         FunctionId(self.program.functions.len() as u32 - 1)
     }
 

@@ -159,6 +159,7 @@ impl Resolver {
                 _ => Code::Failed,
             };
         }
-        Code::Field(self.boxed(of), field.name.clone())
+        let item = ["x", "y", "z"].iter().position(|axis| *axis == field.name).map(|i| i as u8);
+        Code::Field { of: self.boxed(of), name: field.name.clone(), item }
     }
 }

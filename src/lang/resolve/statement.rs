@@ -4,6 +4,7 @@ use super::{Mode, Resolver};
 use crate::diag::{Diagnostic, Span};
 use crate::lang::ast::*;
 use crate::lang::code::*;
+use crate::lang::formula::with_formula;
 use crate::lang::scope::{Access, At, Kind};
 use crate::lang::suggest::{did_you_mean, nearest};
 
@@ -216,7 +217,9 @@ impl Resolver {
         let value = match op {
             Some(op) => {
                 let span = op_span.to(value.span);
-                Node { code: Code::Binary(op, Box::new((read, value))), span: Span { start: name.span.start, ..span } }
+                let operation = Operation { op, a: read, b: value };
+                let span = Span { start: name.span.start, ..span };
+                with_formula(Node { code: Code::Binary(Box::new(operation)), span })
             }
             None => value,
         };

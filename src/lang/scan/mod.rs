@@ -77,6 +77,18 @@ struct Scanner<'a> {
     texts: Vec<Range<usize>>,
 }
 
+/// What names and numbers are made of.
+const PLAIN: [bool; 256] = {
+    let mut plain = [false; 256];
+    let mut b = 0;
+    while b < 256 {
+        plain[b] =
+            (b as u8).is_ascii_alphanumeric() || matches!(b as u8, b'_' | b'.' | b':' | b'-' | b'+') || b >= 0x80;
+        b += 1;
+    }
+    plain
+};
+
 const OPENING_WORDS: [&str; 7] = ["let", "var", "fn", "param", "import", "export", "while"];
 
 impl Scanner<'_> {
@@ -84,6 +96,9 @@ impl Scanner<'_> {
         while self.i < self.bytes.len() {
             let (at, c) = (self.i, self.bytes[self.i]);
             let inside_text = self.inside_text();
+            if !inside_text && self.plain_bytes() {
+                continue;
+            }
             if inside_text {
                 self.text_byte(c);
             } else {
@@ -102,6 +117,18 @@ impl Scanner<'_> {
         }
         self.close_at_end();
         self.end_statement(self.bytes.len());
+    }
+
+    /// Passes over code that ends and begins nothing, most of a file; false where there is none.
+    fn plain_bytes(&mut self) -> bool {
+        let is_plain = |b: &&u8| PLAIN[usize::from(**b)];
+        let plain = self.bytes[self.i..].iter().take_while(is_plain).count();
+        if plain == 0 {
+            return false;
+        }
+        self.i += plain;
+        self.last = Some(self.i - 1);
+        true
     }
 
     fn inside_text(&self) -> bool {

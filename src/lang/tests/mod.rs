@@ -1,6 +1,7 @@
 //! The language end to end: texts in, scenes or messages out.
 
 mod hostile;
+mod likeness;
 mod memory;
 mod mistake;
 mod module;
