@@ -18,6 +18,9 @@
 //! 3. [`render::render`] traces batches of rays, tile by tile, into a [`film::Film`] of linear colours. It can't fail.
 //! 4. [`film::encode`] makes a picture file of it; [`film::OutputFile`] writes the file whole or not at all.
 //!
+//! [`render::stream`] does without the film where only a PNG is wanted: rows are encoded by [`film::PngWriter`] while others
+//! are traced, and memory is needed for those alone that are on the way.
+//!
 //! Watching goes the same way again and again, and keeps what stays true: [`lang::Memory`] parsed files and decoded pictures,
 //! [`render::Retracer`] the tree over unchanged shapes and every tile that a change can't have moved. Both give, bit for bit,
 //! what starting anew gives.

@@ -117,6 +117,8 @@ fn usage_errors() {
         "render ball.scene --precision f16",
         "render ball.scene --bits 12",
         "render ball.scene --bits 16 -o x.exr",
+        "render ball.scene --compression zip",
+        "render ball.scene --compression small -o x.exr",
         "render ball.scene --set radius",
         "render ball.scene --crop 0,0,0,5",
         "render ball.scene --crop 10,0,7,1",
@@ -202,7 +204,7 @@ fn stats_json_has_every_field() {
     let (stdout, _) = desk.expect(0, "render --stats json ball.scene --threads 2 --aa grid:2");
     let stats: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(stats["size"], serde_json::json!([16, 12]));
-    assert_eq!(stats["threads"], 2);
+    assert_eq!(stats["threads"], 1, "one tile is work for one");
     assert_eq!(stats["precision"], "f64");
     assert_eq!(stats["samples_per_pixel"], 4);
     assert_eq!(stats["rays"]["camera"], 16 * 12 * 4);
@@ -261,6 +263,13 @@ fn formats_and_recipes() {
     assert_eq!(of("rtdsl:scene").len(), 64);
     assert!(of("rtdsl:settings").starts_with("size=16x12 aa=off max-depth="));
     assert_eq!(of("rtdsl:parameters"), "radius=0.5");
+    // However it is compressed, it is the same picture.
+    for compression in ["fast", "small"] {
+        desk.expect(0, &format!("render ball.scene --size 90x70 --compression {compression} -o {compression}.png"));
+    }
+    let picture = |name: &str| image::open(desk.path(name)).unwrap().to_rgb8();
+    let length = |name: &str| fs::metadata(desk.path(name)).unwrap().len();
+    assert!(picture("fast.png") == picture("small.png") && length("small.png") < length("fast.png"));
     for name in ["a.exr", "a.hdr"] {
         desk.expect(0, &format!("render ball.scene -o {name}"));
         let picture = image::open(desk.path(name)).unwrap().to_rgb32f();

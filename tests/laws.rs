@@ -279,7 +279,7 @@ fn the_tree_finds_what_brute_force_finds() {
     b.camera(v(0.0, 0.0, 14.0), DVec3::ZERO, 45.0);
     b.scene.settings.max_depth = 4;
     let base = options(&b.scene, 64, 64);
-    let by_tree = picture(&b.scene, &Options { tile: 32, ..base.clone() });
+    let by_tree = picture(&b.scene, &Options { tile: 16, ..base.clone() });
     let by_list = picture(&b.scene, &Options { tile: 1, ..base });
     assert_same(&by_tree, &by_list, "tree and list");
 }

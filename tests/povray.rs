@@ -16,7 +16,7 @@ fn the_seed_scene_is_pov_rays_picture() {
     let options = Options::from_settings(&evaluated.scene.settings);
     let world = World::build(&evaluated.scene, &evaluated.scene.cameras[0]);
     let film = render(&world, &options, &Silent, &AtomicBool::new(false)).expect("not cancelled").film;
-    let developer = Developer::new(Depth::Eight);
+    let developer = Developer::of(Depth::Eight);
     let ours: Vec<u8> = film.pixels.as_flattened().iter().map(|x| developer.code(*x) as u8).collect();
     let theirs = image::open(root.join("tests/reference/cosc363-povray.png")).expect("the reference").into_rgb8();
     assert_eq!((film.width, film.height), theirs.dimensions());

@@ -1,6 +1,6 @@
 //! Values of arguments, read from the command line; what is wrong with one is said in a sentence that shows a right one.
 
-use crate::film::Depth;
+use crate::film::{Compression, Depth};
 use crate::render::Crop;
 use crate::scene::{AntiAliasing, Precision, range};
 use std::net::SocketAddr;
@@ -83,6 +83,15 @@ pub fn bits(s: &str) -> Result<Depth, String> {
         "8" => Ok(Depth::Eight),
         "16" => Ok(Depth::Sixteen),
         _ => Err("a PNG has 8 or 16 bits a channel".into()),
+    }
+}
+
+/// `fast` or `small`.
+pub fn compression(s: &str) -> Result<Compression, String> {
+    match s {
+        "fast" => Ok(Compression::Fast),
+        "small" => Ok(Compression::Small),
+        _ => Err("write `fast`, or `small` for a file that takes longer to make".into()),
     }
 }
 

@@ -9,6 +9,7 @@ pub mod explain;
 pub mod gallery;
 pub mod help;
 pub mod load;
+mod make;
 pub mod params;
 pub mod picture;
 pub mod preview;

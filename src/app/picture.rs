@@ -4,23 +4,25 @@ use super::Stop;
 use super::args::ViewArgs;
 use super::view::settings_line;
 use crate::diag::Diagnostic;
-use crate::film::{Depth, Format, Recipe, recipe};
+use crate::film::{Compression, Depth, Format, Recipe, recipe};
 use crate::lang::Evaluated;
 use crate::render::{Options, World};
 use crate::scene::{Camera, Precision};
 use std::path::Path;
 
-/// The form of a picture file, by its name.
+/// The form of a picture file, by its name; `png` for the one that ends in `.png`.
 ///
 /// # Errors
-/// The name's ending is no picture's, or `depth` isn't for this form.
-pub fn format_of(path: &Path, depth: Depth) -> Result<Format, Stop> {
-    let Some(format) = Format::from_path(path, depth) else {
+/// The name's ending is no picture's, or what `png` asks for isn't for this form.
+pub fn format_of(path: &Path, png: (Depth, Compression)) -> Result<Format, Stop> {
+    let png = Format::Png(png.0, png.1);
+    let Some(format) = Format::from_path(path, png) else {
         let d = Diagnostic::error(format!("what kind of picture shall `{}` be?", path.display()));
         return Err(Stop::usage(d.note("its name must end in `.png`, `.exr` or `.hdr`")));
     };
-    if depth == Depth::Sixteen && format != Format::Png(depth) {
-        let d = Diagnostic::error("`--bits` is for `.png` files");
+    if format != png && png != Format::PNG {
+        let option = if matches!(png, Format::Png(Depth::Sixteen, _)) { "--bits" } else { "--compression" };
+        let d = Diagnostic::error(format!("`{option}` is for `.png` files"));
         return Err(Stop::usage(d.note("`.exr` and `.hdr` hold linear light in a form of their own")));
     }
     Ok(format)

@@ -2,40 +2,52 @@
 
 use crate::render::{Crop, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal};
 use std::time::Duration;
 
-/// The bar; gone when dropped.
-pub struct Bar(ProgressBar);
+/// The bar; gone when dropped. None where nobody would see it.
+pub struct Bar(Option<ProgressBar>);
 
 impl Bar {
     /// A bar for `pixels` pixels on standard error, if it is a terminal; none when `quiet`.
     pub fn new(pixels: u64, quiet: bool) -> Bar {
-        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(Some(pixels), target);
+        if quiet || !io::stderr().is_terminal() {
+            return Bar(None);
+        }
+        let bar = ProgressBar::with_draw_target(Some(pixels), ProgressDrawTarget::stderr());
         // The plain bar serves if the template weren't understood.
         let style = ProgressStyle::with_template("{wide_bar:.cyan} {percent:>3} %  {elapsed} passed, {eta} left");
-        Bar(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
+        Bar(Some(bar.clone().with_style(style.unwrap_or_else(|_| bar.style()))))
     }
 
     /// Adds `pixels` pixels to those that are to be made.
     pub fn lengthen(&self, pixels: u64) {
-        self.0.inc_length(pixels);
+        if let Some(bar) = &self.0 {
+            bar.inc_length(pixels);
+        }
     }
 
     /// Prints something else without the bar in its way.
     pub fn pause(&self, print: impl FnOnce()) {
-        self.0.suspend(print);
+        match &self.0 {
+            Some(bar) => bar.suspend(print),
+            None => print(),
+        }
     }
 
     /// Takes it off the terminal.
     pub fn clear(&self) {
-        self.0.finish_and_clear();
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
     }
 }
 
 impl Progress for Bar {
     fn finished(&self, tile: Crop, _rows: &[&mut [[f32; 3]]]) {
-        self.0.inc(tile.width as u64 * tile.height as u64);
+        if let Some(bar) = &self.0 {
+            bar.inc(tile.width as u64 * tile.height as u64);
+        }
     }
 }
 

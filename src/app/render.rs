@@ -2,18 +2,18 @@
 
 use super::args::RenderArgs;
 use super::load::{load, request, shown_name};
+use super::make::{Made, Make, Pixels};
 use super::picture::{fits, format_of, look, recipe_of};
 use super::progress::Bar;
 use super::stats::{self, Seconds, Stats};
 use super::view::{checked_crop, precision_word};
 use super::{Exit, Stop};
 use crate::diag::Diagnostic;
-use crate::film::{self, Film, Format, OutputFile, Recipe};
+use crate::film::{Format, OutputFile, Recipe};
 use crate::lang::Evaluated;
-use crate::render::{self, Rendered, World};
+use crate::render::World;
 use std::io::{self, Cursor, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Where the picture goes.
@@ -45,27 +45,28 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
 
     let render_start = Instant::now();
     let part = options.crop_or_all();
+    let recipe = recipe_of(&evaluated, &options, camera);
     let bar = Bar::new(part.width as u64 * part.height as u64, args.quiet);
-    let rendered = render::render(&world, &options, &bar, &AtomicBool::new(false));
-    drop(bar);
-    let Some(Rendered { film, rays, threads }) = rendered else {
+    let make = Make { world: &world, options: &options, bar: &bar, recipe: &recipe, is_hashed: args.stats.is_some() };
+    let Some(made) = make.picture(format).map_err(|e| Stop::system("the picture can't be encoded", e))? else {
         return Err(Stop::system("the picture wasn't finished", io::ErrorKind::Interrupted.into()));
     };
+    drop(bar);
     let render_seconds = render_start.elapsed().as_secs_f64();
 
     let encode_start = Instant::now();
-    let recipe = recipe_of(&evaluated, &options, camera);
+    let Made { rays, threads, hash, pixels } = made;
     match (&output, &target) {
         (Output::File(path), Some(target)) => target
-            .write(|out| film::encode(&film, format, &recipe, out))
+            .write(|out| pixels.write(format, &recipe, out))
             .map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))?,
-        _ => write_stdout(&film, format, &recipe)?,
+        _ => write_stdout(pixels, format, &recipe)?,
     }
     let encode_seconds = encode_start.elapsed().as_secs_f64();
 
     if let Some(form) = args.stats {
         let stats = Stats {
-            size: [film.width, film.height],
+            size: [part.width, part.height],
             threads,
             precision: precision_word(options.precision),
             samples_per_pixel: options.aa.side() * options.aa.side(),
@@ -80,7 +81,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
             },
             peak_memory_bytes: stats::peak_memory_bytes(),
             features: world.features(&evaluated.scene).into_iter().filter(|f| f.in_use).map(|f| f.name).collect(),
-            image_hash: film.hash(),
+            image_hash: hash.unwrap_or_default(),
         };
         let text = stats.print(form);
         // Standard output is the picture's where it goes there.
@@ -94,23 +95,25 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
         && io::stderr().is_terminal()
     {
         let seconds = start.elapsed().as_secs_f64();
-        let _ = writeln!(io::stderr(), "{}  {}x{}  {seconds:.2} s", path.display(), film.width, film.height);
+        let _ = writeln!(io::stderr(), "{}  {}x{}  {seconds:.2} s", path.display(), part.width, part.height);
     }
+    // The process is about to end, and gives all its memory back at once.
+    std::mem::forget((world, evaluated));
     Ok(Exit::Done)
 }
 
 /// Where the picture goes and in what form.
 fn output(args: &RenderArgs) -> Result<(Output, Format), Stop> {
-    let png = Format::Png(args.bits);
+    let png = (args.bits, args.compression);
     let from_stdin = args.scene.file == Path::new("-");
     match &args.out {
-        Some(path) if path == Path::new("-") => Ok((Output::Stdout, png)),
-        Some(path) => Ok((Output::File(path.clone()), format_of(path, args.bits)?)),
+        Some(path) if path == Path::new("-") => Ok((Output::Stdout, Format::Png(png.0, png.1))),
+        Some(path) => Ok((Output::File(path.clone()), format_of(path, png)?)),
         None if from_stdin && io::stdout().is_terminal() => {
             let d = Diagnostic::error("a picture of standard input needs a place to go");
             Err(Stop::usage(d.note("write `-o NAME.png`, or send standard output to a file or another program")))
         }
-        None if from_stdin => Ok((Output::Stdout, png)),
+        None if from_stdin => Ok((Output::Stdout, Format::Png(png.0, png.1))),
         None => {
             let Some(stem) = args.scene.file.file_stem() else {
                 let d = Diagnostic::error(format!("`{}` names no file", shown_name(&args.scene.file)));
@@ -118,7 +121,7 @@ fn output(args: &RenderArgs) -> Result<(Output, Format), Stop> {
             };
             let mut name = stem.to_os_string();
             name.push(".png");
-            Ok((Output::File(name.into()), png))
+            Ok((Output::File(name.into()), Format::Png(png.0, png.1)))
         }
     }
 }
@@ -143,9 +146,9 @@ pub fn spares_sources(path: &Path, evaluated: &Evaluated) -> Result<(), Stop> {
     Ok(())
 }
 
-fn write_stdout(film: &Film, format: Format, recipe: &Recipe) -> Result<(), Stop> {
+fn write_stdout(pixels: Pixels, format: Format, recipe: &Recipe) -> Result<(), Stop> {
     let mut memory = Cursor::new(Vec::new());
-    film::encode(film, format, recipe, &mut memory)?;
+    pixels.write(format, recipe, &mut memory)?;
     let mut out = io::stdout().lock();
     out.write_all(memory.get_ref())?;
     out.flush()?;

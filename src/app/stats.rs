@@ -51,9 +51,9 @@ pub struct Seconds {
     pub evaluate: f64,
     /// Scene to world.
     pub world: f64,
-    /// World to film.
+    /// World to pixels; those of a PNG are encoded meanwhile.
     pub render: f64,
-    /// Film to file.
+    /// What is left to do for the file.
     pub encode: f64,
     /// From the start of the command to its end.
     pub total: f64,

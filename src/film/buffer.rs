@@ -19,23 +19,67 @@ impl Film {
 }
 
 impl Film {
-    /// A name for exactly this picture: BLAKE3 of its size and of every channel's bits, in hexadecimal. Equal pictures have
-    /// equal names on every machine; +0 and -0 are different.
+    /// A name for exactly this picture, as [`Digest`] makes it.
     pub fn hash(&self) -> String {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&self.width.to_le_bytes());
-        hasher.update(&self.height.to_le_bytes());
+        let mut digest = Digest::new(self.width, self.height);
+        let mut bytes = Vec::new();
         for row in self.pixels.chunks(self.width.max(1) as usize) {
-            let bytes: Vec<u8> = row.as_flattened().iter().flat_map(|v| v.to_bits().to_le_bytes()).collect();
-            hasher.update(&bytes);
+            bytes.clear();
+            to_bytes(row, &mut bytes);
+            digest.add(&bytes);
         }
-        hasher.finalize().to_hex().to_string()
+        digest.end()
     }
+}
+
+/// Makes a name for exactly one picture from its pixels, row by row: BLAKE3 of its size and of every channel's bits, in
+/// hexadecimal. Equal pictures have equal names on every machine; +0 and -0 are different.
+pub struct Digest(blake3::Hasher);
+
+impl Digest {
+    /// For a picture of this size.
+    pub fn new(width: u32, height: u32) -> Digest {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&width.to_le_bytes());
+        hasher.update(&height.to_le_bytes());
+        Digest(hasher)
+    }
+
+    /// Adds pixels, as [`to_bytes`] gives them.
+    pub fn add(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// The name.
+    pub fn end(self) -> String {
+        self.0.finalize().to_hex().to_string()
+    }
+}
+
+/// Adds the bits of pixels to `out`, 12 bytes each: the least byte of a channel first.
+pub fn to_bytes(pixels: &[[f32; 3]], out: &mut Vec<u8>) {
+    out.extend(pixels.as_flattened().iter().flat_map(|v| v.to_bits().to_le_bytes()));
+}
+
+/// Adds to `out` the pixels that [`to_bytes`] made `bytes` of.
+pub fn from_bytes(bytes: &[u8], out: &mut Vec<[f32; 3]>) {
+    let channel = |b: &[u8; 4]| f32::from_bits(u32::from_le_bytes(*b));
+    let (channels, _) = bytes.as_chunks();
+    out.extend(channels.as_chunks().0.iter().map(|[r, g, b]| [channel(r), channel(g), channel(b)]));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_and_back() {
+        let pixels = [[1.5, -0.0, f32::MAX], [f32::from_bits(1), 0.1, -7.0]];
+        let (mut bytes, mut back) = (Vec::new(), Vec::new());
+        to_bytes(&pixels, &mut bytes);
+        from_bytes(&bytes, &mut back);
+        assert!(bytes.len() == 24 && back == pixels && back[0][1].is_sign_negative());
+    }
 
     #[test]
     fn hashes_tell_pictures_apart() {

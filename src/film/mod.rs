@@ -1,14 +1,18 @@
 //! From linear colours to picture files: the picture in linear light, its display codes, the formats, and writing whole
-//! files or none.
+//! files or none; and reading the files of others.
 
 pub mod buffer;
 pub mod develop;
 pub mod format;
+pub mod png;
+pub mod read;
 pub mod recipe;
 pub mod write;
 
-pub use buffer::Film;
+pub use buffer::{Digest, Film};
 pub use develop::{Depth, Developer};
 pub use format::{Format, encode};
+pub use png::{Compression, PngWriter};
+pub use read::{Picture, ReadError, read};
 pub use recipe::Recipe;
 pub use write::OutputFile;

@@ -128,12 +128,14 @@ pub struct Formula {
 pub enum Step {
     /// Keeps the number at hand for later and goes on with another.
     Take(Source),
-    /// The number at hand and a further number.
-    Add(Source),
-    Subtract(Source),
-    Multiply(Source),
-    Divide(Source),
-    /// Another operator.
+    /// The number at hand and a further one. The most frequent have cases of their own: they are found with one jump.
+    AddConstant(f64),
+    MultiplyConstant(f64),
+    DivideConstant(f64),
+    AddLocal(u32),
+    SubtractLocal(u32),
+    MultiplyLocal(u32),
+    DivideLocal(u32),
     With(Op, Source),
     /// The number kept last, an operator, and the one at hand.
     Join(Op),
@@ -147,12 +149,6 @@ pub enum Step {
 pub enum Source {
     Constant(f64),
     Local(u32),
-    Rarer(Rarer),
-}
-
-/// With it, a [`Source`] has so few cases that no table of jumps is made of them.
-#[derive(Clone, Copy, Debug)]
-pub enum Rarer {
     Global(u32),
     /// An item of a vector.
     Item(u32, u8),

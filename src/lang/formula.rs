@@ -50,9 +50,9 @@ fn part(node: &Node) -> Option<Part> {
         Code::Const(Value::Number(x)) => (Source::Constant(*x), false),
         Code::Const(Value::Angle(x)) => (Source::Constant(*x), true),
         Code::Local(i) => (Source::Local(*i), false),
-        Code::Global(i) => (Source::Rarer(Rarer::Global(*i)), false),
+        Code::Global(i) => (Source::Global(*i), false),
         Code::Field { of, item: Some(item), .. } => match of.code {
-            Code::Local(i) => (Source::Rarer(Rarer::Item(i, *item)), false),
+            Code::Local(i) => (Source::Item(i, *item), false),
             _ => return None,
         },
         _ => return None,
@@ -70,12 +70,16 @@ fn operation(o: &Operation) -> Option<Part> {
         _ => return None,
     };
     match b.steps[..] {
-        [Step::Take(source)] => a.steps.push(match o.op {
-            Op::Add => Step::Add(source),
-            Op::Subtract => Step::Subtract(source),
-            Op::Multiply => Step::Multiply(source),
-            Op::Divide => Step::Divide(source),
-            op => Step::With(op, source),
+        [Step::Take(source)] => a.steps.push(match (o.op, source) {
+            (Op::Add, Source::Constant(c)) => Step::AddConstant(c),
+            (Op::Subtract, Source::Constant(c)) => Step::AddConstant(-c),
+            (Op::Multiply, Source::Constant(c)) => Step::MultiplyConstant(c),
+            (Op::Divide, Source::Constant(c)) => Step::DivideConstant(c),
+            (Op::Add, Source::Local(i)) => Step::AddLocal(i),
+            (Op::Subtract, Source::Local(i)) => Step::SubtractLocal(i),
+            (Op::Multiply, Source::Local(i)) => Step::MultiplyLocal(i),
+            (Op::Divide, Source::Local(i)) => Step::DivideLocal(i),
+            (op, source) => Step::With(op, source),
         }),
         _ => {
             a.steps.extend(b.steps);
@@ -121,6 +125,7 @@ impl Machine<'_> {
 
     fn number_of(&self, steps: &[Step], frame: Frame<'_>) -> Option<f64> {
         let (locals, globals) = (self.stack.get(frame.base..)?, &self.globals[..]);
+        let local = |i: u32| locals.get(i as usize)?.number();
         let mut kept = [0.0; KEPT];
         let (mut depth, mut x) = (0, 0.0);
         for step in steps {
@@ -130,10 +135,13 @@ impl Machine<'_> {
                     depth += 1;
                     source.read(locals, globals)?
                 }
-                Step::Add(source) => x + source.read(locals, globals)?,
-                Step::Subtract(source) => x - source.read(locals, globals)?,
-                Step::Multiply(source) => x * source.read(locals, globals)?,
-                Step::Divide(source) => x / source.read(locals, globals)?,
+                Step::AddConstant(c) => x + c,
+                Step::MultiplyConstant(c) => x * c,
+                Step::DivideConstant(c) => x / c,
+                Step::AddLocal(i) => x + local(*i)?,
+                Step::SubtractLocal(i) => x - local(*i)?,
+                Step::MultiplyLocal(i) => x * local(*i)?,
+                Step::DivideLocal(i) => x / local(*i)?,
                 Step::With(op, source) => compute(*op, x, source.read(locals, globals)?),
                 Step::Join(op) => {
                     depth -= 1;
@@ -157,8 +165,8 @@ impl Source {
         match self {
             Source::Constant(x) => Some(x),
             Source::Local(i) => locals.get(i as usize)?.number(),
-            Source::Rarer(Rarer::Global(i)) => globals.get(i as usize)?.number(),
-            Source::Rarer(Rarer::Item(i, item)) => match locals.get(i as usize)? {
+            Source::Global(i) => globals.get(i as usize)?.number(),
+            Source::Item(i, item) => match locals.get(i as usize)? {
                 Value::Vec3(v) => v.get(usize::from(item)).copied(),
                 _ => None,
             },

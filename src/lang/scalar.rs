@@ -7,6 +7,7 @@ use super::machine::{Frame, Machine};
 use super::value::Value;
 use crate::diag::Span;
 use ecow::EcoVec;
+use std::mem::{forget, replace};
 
 /// A value that fits a register.
 #[derive(Clone, Copy, Debug)]
@@ -78,10 +79,19 @@ impl Value {
         match (&mut *self, made) {
             (Value::Number(old), Made::Scalar(Scalar::Number(new))) => *old = new,
             (Value::Vec3(old), Made::Vector(new)) => *old = new,
-            (_, Made::Scalar(new)) => *self = new.into(),
-            (_, Made::Vector(new)) => *self = Value::Vec3(new),
-            (_, Made::Other(new)) => *self = new,
+            // Nothing is there to be let go of, which the compiler doesn't see.
+            (Value::Unset, Made::Scalar(Scalar::Number(new))) => forget(replace(self, Value::Number(new))),
+            (_, made) => self.put_any(made),
         }
+    }
+
+    #[inline(never)]
+    fn put_any(&mut self, made: Made) {
+        *self = match made {
+            Made::Scalar(new) => new.into(),
+            Made::Vector(new) => Value::Vec3(new),
+            Made::Other(new) => new,
+        };
     }
 }
 
@@ -98,7 +108,7 @@ impl Machine<'_> {
     /// What was left.
     #[inline]
     pub fn take(&mut self) -> Outcome {
-        std::mem::replace(&mut self.other, Ok(Value::None))
+        replace(&mut self.other, Ok(Value::None))
     }
 
     /// What was left, where it is a value; a mistake is left again.

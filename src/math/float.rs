@@ -1,7 +1,7 @@
 //! Machine numbers as [`Real`]: `f64`, and `f32` for drafts.
 
 use super::Dd;
-use super::real::{Bool, Elem, Lane, Real, Single};
+use super::real::{Bool, Elem, Lane, Real, Single, Task};
 
 macro_rules! scalar {
     ($t:ident) => {
@@ -77,6 +77,22 @@ macro_rules! scalar {
                 out
             }
             #[inline(always)]
+            fn alone<T: Task>(task: T) -> T::Output {
+                #[inline(never)]
+                fn in_a_function_of_its_own<T: Task>(task: T) -> T::Output {
+                    task.run()
+                }
+                in_a_function_of_its_own(task)
+            }
+            #[inline(always)]
+            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+                #[inline(never)]
+                fn in_a_function_of_its_own<T>(f: impl FnOnce() -> T) -> T {
+                    f()
+                }
+                in_a_function_of_its_own(f)
+            }
+            #[inline(always)]
             fn again<const N: usize, const M: usize>(
                 doubt: Bool,
                 given: [Self; N],
@@ -88,6 +104,7 @@ macro_rules! scalar {
         }
         impl Lane for $t {
             type Elem = $t;
+            type Boxes = f32;
             const WIDTH: usize = 1;
             #[inline(always)]
             fn load(src: &[$t]) -> Self {

@@ -20,6 +20,7 @@ impl KeyedHash {
     }
 
     /// Adds a number: equal numbers are equal keys (-0 counts as 0).
+    #[inline]
     pub fn with_f64(self, x: f64) -> Self {
         self.with(if x == 0.0 { 0 } else { x.to_bits() })
     }
@@ -54,6 +55,7 @@ impl Default for KeyedHash {
     }
 }
 
+#[inline]
 const fn mix(mut z: u64) -> u64 {
     z = z.wrapping_add(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -4,22 +4,40 @@
 //! Written with plain products and sums only, so that it has the same bits with and without fused multiply-add.
 
 use super::hash::KeyedHash;
+use super::real::{each3, three};
 
 /// Gradient noise in about −1..1, 0 at lattice points; continuous with two derivatives.
 pub fn gradient_noise(p: [f64; 3], seed: u64) -> f64 {
-    let cell = p.map(f64::floor);
-    let f: [f64; 3] = std::array::from_fn(|i| p[i] - cell[i]);
-    let w = f.map(|x| x * x * x * (x * (x * 6.0 - 15.0) + 10.0));
-    let corner = |dx: usize, dy: usize, dz: usize| {
-        let d = [dx, dy, dz];
-        let h = lattice(std::array::from_fn(|i| cell[i] + d[i] as f64), seed).bits();
-        let v: [f64; 3] = std::array::from_fn(|i| f[i] - d[i] as f64);
-        slope(h, v)
-    };
+    let cell = each3!(p, x => floor(x));
+    let f = three!(i => p[i] - cell[i]);
+    let w = each3!(f, x => x * x * x * (x * (x * 6.0 - 15.0) + 10.0));
+    // The lattice's hash takes one coordinate after another: what corners have in common is hashed once.
+    let start = KeyedHash::new().with(seed);
+    let face = [0, 1].map(|dx: usize| {
+        let along_x = start.with_f64(cell[0] + dx as f64);
+        [0, 1].map(|dy: usize| {
+            let along_y = along_x.with_f64(cell[1] + dy as f64);
+            [0, 1].map(|dz: usize| {
+                let h = along_y.with_f64(cell[2] + dz as f64).bits();
+                slope(h, [f[0] - dx as f64, f[1] - dy as f64, f[2] - dz as f64])
+            })
+        })
+    });
     let lerp = |a: f64, b: f64, t: f64| a + t * (b - a);
-    let edge = |dy: usize, dz: usize| lerp(corner(0, dy, dz), corner(1, dy, dz), w[0]);
-    let face = |dz: usize| lerp(edge(0, dz), edge(1, dz), w[1]);
-    lerp(face(0), face(1), w[2])
+    let edge = |dy: usize, dz: usize| lerp(face[0][dy][dz], face[1][dy][dz], w[0]);
+    let level = |dz: usize| lerp(edge(0, dz), edge(1, dz), w[1]);
+    lerp(level(0), level(1), w[2])
+}
+
+/// The largest whole number not above `x`. Without a call, which `f64::floor` is on processors that needn't have the
+/// instruction: from 2^52 on every number is whole.
+#[inline]
+fn floor(x: f64) -> f64 {
+    if !(x.abs() < (1u64 << 52) as f64) {
+        return x;
+    }
+    let whole = (x as i64) as f64;
+    (if whole > x { whole - 1.0 } else { whole }).copysign(x)
 }
 
 /// Perlin's twelve gradients towards the middles of a cube's edges, four of them twice.
@@ -59,23 +77,24 @@ pub fn vector_noise(p: [f64; 3], octaves: u32, seed: u64) -> [f64; 3] {
 
 /// Distance to the nearest of the points scattered one to a unit cell.
 pub fn cell_noise(p: [f64; 3], seed: u64) -> f64 {
-    let cell = p.map(f64::floor);
+    let cell = each3!(p, x => floor(x));
+    let start = KeyedHash::new().with(seed);
     let mut best = f64::INFINITY;
-    for i in 0..27 {
-        let c: [f64; 3] =
-            [cell[0] + (i % 3) as f64 - 1.0, cell[1] + (i / 3 % 3) as f64 - 1.0, cell[2] + (i / 9) as f64 - 1.0];
-        let h = lattice(c, seed);
-        let d: [f64; 3] = std::array::from_fn(|k| c[k] + h.with(k as u64).unit() - p[k]);
-        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if d2 < best {
-            best = d2;
+    for x in [0.0, 1.0, 2.0].map(|dx| cell[0] + dx - 1.0) {
+        let along_x = start.with_f64(x);
+        for y in [0.0, 1.0, 2.0].map(|dy| cell[1] + dy - 1.0) {
+            let along_y = along_x.with_f64(y);
+            for z in [0.0, 1.0, 2.0].map(|dz| cell[2] + dz - 1.0) {
+                let (c, h) = ([x, y, z], along_y.with_f64(z));
+                let d = three!(k => c[k] + h.with(k as u64).unit() - p[k]);
+                let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                if d2 < best {
+                    best = d2;
+                }
+            }
         }
     }
     best.sqrt()
-}
-
-fn lattice(cell: [f64; 3], seed: u64) -> KeyedHash {
-    cell.iter().fold(KeyedHash::new().with(seed), |h, &x| h.with_f64(x))
 }
 
 #[cfg(test)]

@@ -88,6 +88,13 @@ pub trait Real:
         f()
     }
 
+    /// Does `task` with one number at a time, in a function that all lanes of a machine share, compiled for its fused
+    /// multiply-add: for what is too large to be there once for each kind of lane.
+    #[inline(always)]
+    fn alone<T: Task>(task: T) -> T::Output {
+        task.run()
+    }
+
     /// `rough`, but what `f` makes of `given` in [`Fine`](Real::Fine) in the lanes of `doubt`. Scalars that are themselves more
     /// than a machine number keep `rough`.
     #[inline(always)]
@@ -157,6 +164,14 @@ pub trait Real:
     }
 }
 
+/// Something to do; a trait and not a closure, for a closure within a function over lanes is another one for each of them.
+pub trait Task {
+    /// What comes of it.
+    type Output;
+    /// Does it; to be inlined.
+    fn run(self) -> Self::Output;
+}
+
 /// A [`Real`] that holds one value: what branches is written for it.
 pub trait Single: Real<Single = Self> {
     /// Its magnitude, or a bound on it, roughly: for choosing a power of two to scale by.
@@ -176,6 +191,8 @@ pub trait Single: Real<Single = Self> {
 pub trait Lane: Real<Single = f64> {
     /// The stored form.
     type Elem: Elem;
+    /// A register of up to eight `f32` of the same instructions: eight boxes of a tree are tested in it.
+    type Boxes: Lane<Elem = f32>;
     /// How many values one `Lane` holds.
     const WIDTH: usize;
 

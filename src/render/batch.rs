@@ -2,23 +2,42 @@
 //! as scalars too, so that they move with the rays; all stay exact (below 2^24 even in `f32`).
 
 use crate::math::{Elem, Lane};
+use std::ops::{Deref, DerefMut};
 
-/// One value a ray.
-pub type Column<E> = Box<[E]>;
-/// One vector a ray.
-pub type Column3<E> = [Column<E>; 3];
+/// Most rays of a batch: a tile's pixels.
+pub const MOST: usize = 256;
 
 /// Columns are longer than a batch by this, so that the last lanes can be loaded and stored whole.
 pub const PADDING: usize = 16;
 
-/// A column for `n` rays.
-pub fn column<E: Elem>(n: usize) -> Column<E> {
-    vec![E::default(); n + PADDING].into_boxed_slice()
+/// One value a ray. Aligned as cache lines are, or every wide load would take two of them; and of one length for all, so that
+/// checking one place of one column checks that place of all.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct Column<E>([E; MOST + PADDING]);
+
+/// One vector a ray.
+pub type Column3<E> = [Column<E>; 3];
+
+impl<E: Elem> Default for Column<E> {
+    fn default() -> Column<E> {
+        Column([E::default(); MOST + PADDING])
+    }
 }
 
-/// Three columns for `n` rays.
-pub fn column3<E: Elem>(n: usize) -> Column3<E> {
-    [column(n), column(n), column(n)]
+impl<E> Deref for Column<E> {
+    type Target = [E; MOST + PADDING];
+    #[inline(always)]
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<E> DerefMut for Column<E> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
 }
 
 /// The vectors of the rays from number `g` on.
@@ -39,8 +58,8 @@ pub fn store3<L: Lane>(c: &mut Column3<L::Elem>, g: usize, v: [L; 3]) {
 pub const NONE: f64 = -1.0;
 
 /// A batch of rays.
-#[derive(Clone, Debug)]
-pub struct RayBatch<E> {
+#[derive(Clone, Debug, Default)]
+pub struct RayBatch<E: Elem> {
     /// Origins, camera-relative.
     pub o: Column3<E>,
     /// Directions; any length but 0.
@@ -59,36 +78,13 @@ pub struct RayBatch<E> {
     pub len: usize,
 }
 
-impl<E: Elem> RayBatch<E> {
-    /// Room for `n` rays.
-    pub fn new(n: usize) -> RayBatch<E> {
-        RayBatch {
-            o: column3(n),
-            d: column3(n),
-            weight: column3(n),
-            slot: column(n),
-            source: column(n),
-            source_part: column(n),
-            outward: column(n),
-            len: 0,
-        }
-    }
-}
-
 /// What each ray of a batch met first.
-#[derive(Clone, Debug)]
-pub struct HitColumns<E> {
+#[derive(Clone, Debug, Default)]
+pub struct HitColumns<E: Elem> {
     /// Distance along the ray, in units of its direction's length.
     pub t: Column<E>,
     /// The primitive, or [`NONE`].
     pub id: Column<E>,
     /// The part of it.
     pub part: Column<E>,
-}
-
-impl<E: Elem> HitColumns<E> {
-    /// Room for `n` rays.
-    pub fn new(n: usize) -> HitColumns<E> {
-        HitColumns { t: column(n), id: column(n), part: column(n) }
-    }
 }

@@ -62,7 +62,9 @@ impl Shaft {
             return false;
         }
         let (to, radius) = (minus(b.centre(), self.cone.apex), b.radius());
-        length(to) * (1.0 - self.margin) <= self.reach + radius && self.cone.may_meet_ball(to, radius)
+        let furthest = self.reach + radius;
+        // The distance's square is as good to compare, by twice the margin.
+        dot(to, to) * (1.0 - 2.0 * self.margin) <= furthest * furthest && self.cone.may_meet_ball(to, radius)
     }
     /// Whether the plane n·p = offset may come between the light and a point of the box.
     pub fn may_cross(&self, points: &Bounds, n: [f64; 3], offset: f64) -> bool {
@@ -114,17 +116,18 @@ impl Cone {
     /// the sum of both half-angles.
     #[inline]
     fn may_meet_ball(&self, to: [f64; 3], radius: f64) -> bool {
-        let (distance, reach) = (length(to), (radius + self.origin_radius) * (1.0 + self.margin));
-        if self.is_everything() || !(reach < distance) {
+        let (square, reach) = (dot(to, to), (radius + self.origin_radius) * (1.0 + self.margin));
+        if self.is_everything() || !(reach * reach < square) {
             return true;
         }
-        let s = reach / distance;
-        let c = larger(1.0 - s * s, 0.0).sqrt();
+        // Cosine and sine of the ball's half-angle, times its distance: no quotient, and one root.
+        let (cos, sin) = ((square - reach * reach).sqrt(), reach);
         // The sum of the angles passes half a turn where the sine of it turns negative.
-        if self.sin * c + self.cos * s < 0.0 {
+        if self.sin * cos + self.cos * sin < 0.0 {
             return true;
         }
-        dot(self.axis, to) >= (self.cos * c - self.sin * s - self.margin) * distance
+        let at_least_distance = to[0].abs() + to[1].abs() + to[2].abs();
+        dot(self.axis, to) >= self.cos * cos - self.sin * sin - self.margin * at_least_distance
     }
 
     /// Whether a ray of it may reach the box.

@@ -3,8 +3,10 @@
 //! Nothing here changes a bit of the picture: a fused multiply-add gives the same result from the processor and from the
 //! library that stands in for it, only faster.
 
+use super::belt::{Belt, Watchman};
+use super::crew::{crew, useful};
 use super::footprint::{Footprint, Recorder};
-use super::options::{Crop, Instructions, Options, Progress, RayCounts, Rendered};
+use super::options::{Crop, Instructions, Options, Progress, RayCounts, Rendered, Streamed};
 use super::tile::TileWorker;
 use super::world::World;
 use crate::film::Film;
@@ -12,18 +14,46 @@ use crate::math::Lane;
 #[cfg(target_arch = "x86_64")]
 use crate::math::lane;
 use crate::scene::Precision;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// Traces the picture; `None` where `cancel` was set meanwhile. Its bits depend on `world` and on size, anti-aliasing, depth
 /// and precision of `options`, on nothing else.
 pub fn render(world: &World, options: &Options, progress: &dyn Progress, cancel: &AtomicBool) -> Option<Rendered> {
     let part = options.crop_or_all();
     let mut film = Film::new(part.width, part.height);
-    let work = Work { world, options, progress, cancel, tiles: None };
-    let (rays, threads) = work.run(&mut film, None)?;
+    let work = Work { world, options, progress, cancel };
+    let (rays, threads) = work.fill(&mut film, None, None)?;
     Some(Rendered { film, rays, threads })
 }
+
+/// As [`render`], without a film of the whole picture: `develop` makes bytes of pixels, as many for each, on the threads
+/// that trace; `take` is given them a few rows at a time, from the top, while others are traced.
+///
+/// # Errors
+/// The first of `take`, which ends the work.
+pub fn stream(
+    world: &World,
+    options: &Options,
+    (progress, cancel): (&dyn Progress, &AtomicBool),
+    (pixel_bytes, develop): (usize, Develop<'_>),
+    take: &mut (dyn FnMut(&[u8]) -> io::Result<()> + Send),
+) -> io::Result<Option<Streamed>> {
+    let (part, side) = (options.crop_or_all(), options.tile_side());
+    let tiles = part.width.div_ceil(side) as usize * part.height.div_ceil(side) as usize;
+    let threads = useful(options.threads, tiles);
+    let work = Work { world, options, progress, cancel };
+    let belt = Belt::new(part, side, pixel_bytes, threads);
+    let take = Mutex::new(take);
+    let take = |rows: &[u8]| (take.lock().unwrap_or_else(PoisonError::into_inner))(rows);
+    let done = work.run(&Course::Belt { belt: &belt, develop, take: &take }, threads);
+    belt.end()?;
+    Ok(done.map(|(rays, threads)| Streamed { rays, threads }))
+}
+
+/// Adds the bytes of pixels to what is there.
+pub type Develop<'d> = &'d (dyn Fn(&[[f32; 3]], &mut Vec<u8>) + Sync);
 
 /// Traces the tiles marked in `tiles`, in the order of [`tiles_of`], into `film`, and leaves in `footprints` what each
 /// depended on.
@@ -35,8 +65,8 @@ pub fn render_tiles(
     tiles: &[bool],
     footprints: &mut [Footprint],
 ) -> Option<RayCounts> {
-    let work = Work { world, options, progress, cancel, tiles: Some(tiles) };
-    work.run(film, Some(footprints)).map(|(rays, _)| rays)
+    let work = Work { world, options, progress, cancel };
+    work.fill(film, Some(tiles), Some(footprints)).map(|(rays, _)| rays)
 }
 
 /// The tiles of a picture, row by row.
@@ -95,8 +125,6 @@ struct Work<'w> {
     options: &'w Options,
     progress: &'w dyn Progress,
     cancel: &'w AtomicBool,
-    /// Which tiles; `None` for all.
-    tiles: Option<&'w [bool]>,
 }
 
 /// A tile, the rows of the film that it fills, and where its footprint goes.
@@ -106,79 +134,132 @@ struct Job<'f> {
     footprint: Option<&'f mut Footprint>,
 }
 
-/// Stack of a worker: patterns nest up to the language's limit, at a few hundred bytes a level.
-const STACK: usize = 16 << 20;
+/// Where the tiles come from, and where their pixels go.
+enum Course<'c> {
+    /// Each to its place in a film. A job is locked once, by the thread whose turn it is.
+    Film { jobs: &'c [Mutex<Job<'c>>], next: AtomicUsize, record: bool },
+    /// Out, in order, and forgotten.
+    Belt { belt: &'c Belt, develop: Develop<'c>, take: &'c (dyn Fn(&[u8]) -> io::Result<()> + Sync) },
+}
 
 impl Work<'_> {
-    /// Rays traced, and by how many threads.
-    fn run(&self, film: &mut Film, footprints: Option<&mut [Footprint]>) -> Option<(RayCounts, usize)> {
-        let on = Build::of(self.options.instructions);
-        // The one place that chooses lanes: only what the processor was found to have.
-        let run = || match (on, self.options.precision) {
-            (Build::Avx512, Precision::F64) => self.trace::<lane::F64x8>(film, footprints),
-            _ => self.trace::<f64>(film, footprints),
-        };
-        // Patterns may nest deep, and each level takes a frame of the stack.
-        let threads = self.options.threads.unwrap_or(0);
-        match rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build() {
-            Ok(pool) => pool.install(run),
-            Err(_) => run(), // no threads to be had: this one does it
-        }
+    /// Traces the wanted tiles of a film; rays, and the threads that traced them.
+    fn fill(
+        &self,
+        film: &mut Film,
+        wanted: Option<&[bool]>,
+        footprints: Option<&mut [Footprint]>,
+    ) -> Option<(RayCounts, usize)> {
+        let record = footprints.is_some();
+        let jobs = jobs(self.options, film, wanted, footprints);
+        let threads = useful(self.options.threads, jobs.len());
+        self.run(&Course::Film { jobs: &jobs, next: AtomicUsize::new(0), record }, threads)
     }
 
-    fn trace<L: Lane>(&self, film: &mut Film, footprints: Option<&mut [Footprint]>) -> Option<(RayCounts, usize)> {
-        let record = footprints.is_some();
-        let recorder = || if record { Recorder::new(self.world.primitives.len()) } else { Recorder::off() };
-        let worker = || TileWorker::<L>::new(self.world, self.options, self.cancel, recorder());
-        let jobs = self.jobs(film, footprints);
-        let work = |worker: &mut TileWorker<'_, L>, mut job: Job<'_>| {
-            if self.cancel.load(Relaxed) {
-                return RayCounts::default();
-            }
-            worker.tracer.counts = RayCounts::default();
-            L::vectorize(
-                #[inline(always)]
-                || worker.render(job.tile, &mut job.rows),
-            );
-            if let Some(footprint) = job.footprint {
-                *footprint = worker.tracer.recorder().take();
-            }
-            if !self.cancel.load(Relaxed) {
-                self.progress.finished(job.tile, &job.rows);
-            }
-            worker.tracer.counts
-        };
-        let rays = jobs.into_par_iter().map_init(worker, work).reduce(RayCounts::default, RayCounts::plus);
+    /// Follows the course; rays, and the threads that traced them.
+    fn run(&self, course: &Course<'_>, threads: usize) -> Option<(RayCounts, usize)> {
+        let on = Build::of(self.options.instructions);
+        // The one place that chooses lanes: only what the processor was found to have.
+        let counts = crew(threads, || match (on, self.options.precision) {
+            (Build::Common, Precision::F64) => self.trace::<f64>(course),
+            (Build::Common, Precision::F32) => self.trace::<f32>(course),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx2, Precision::F64) => self.trace::<lane::F64x4>(course),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx2, Precision::F32) => self.trace::<lane::F32x8>(course),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx512, Precision::F64) => self.trace::<lane::F64x8>(course),
+            #[cfg(target_arch = "x86_64")]
+            (Build::Avx512, Precision::F32) => self.trace::<lane::F32x16>(course),
+        });
         if self.cancel.load(Relaxed) {
             return None;
         }
-        Some((rays, rayon::current_num_threads()))
+        let threads = counts.len();
+        Some((counts.into_iter().fold(RayCounts::default(), RayCounts::plus), threads))
     }
 
-    /// Cuts the film into tiles, those of [`tiles_of`] that are to be traced.
-    fn jobs<'f>(&self, film: &'f mut Film, footprints: Option<&'f mut [Footprint]>) -> Vec<Job<'f>> {
-        let (part, side) = (self.options.crop_or_all(), self.options.tile_side() as usize);
-        let mut footprints = footprints.map(|all| all.iter_mut());
-        let tiles = tiles_of(self.options).into_iter();
-        let mut jobs: Vec<Job<'f>> = tiles
-            .map(|tile| {
-                let footprint = footprints.as_mut().and_then(Iterator::next);
-                Job { tile, rows: Vec::with_capacity(tile.height as usize), footprint }
-            })
-            .collect();
-        let (columns, width) = ((part.width as usize).div_ceil(side), part.width as usize);
-        for (y, row) in film.pixels.chunks_mut(width).enumerate() {
-            let first = y / side * columns;
-            for (piece, job) in row.chunks_mut(side).zip(&mut jobs[first..]) {
-                job.rows.push(piece);
+    /// One thread's share.
+    fn trace<L: Lane>(&self, course: &Course<'_>) -> RayCounts {
+        let recorder = match course {
+            Course::Film { record: true, .. } => Recorder::new(self.world.primitives.len()),
+            _ => Recorder::off(),
+        };
+        let mut worker = TileWorker::<L>::new(self.world, self.options, self.cancel, recorder);
+        match course {
+            Course::Film { jobs, next, .. } => {
+                while let Some(job) = jobs.get(next.fetch_add(1, Relaxed))
+                    && !self.cancel.load(Relaxed)
+                {
+                    let mut job = job.lock().unwrap_or_else(PoisonError::into_inner);
+                    let Job { tile, rows, footprint } = &mut *job;
+                    self.tile(&mut worker, *tile, rows);
+                    if let Some(footprint) = footprint {
+                        **footprint = worker.tracer.recorder().take();
+                    }
+                }
+            }
+            Course::Belt { belt, develop, take } => {
+                let _watchman = Watchman(belt);
+                let side = self.options.tile_side() as usize;
+                let (mut pixels, mut bytes) = (vec![[0.0; 3]; side * side], Vec::new());
+                while let Some(tile) = belt.next() {
+                    let pixels = &mut pixels[..tile.width as usize * tile.height as usize];
+                    let mut rows: Vec<&mut [[f32; 3]]> = pixels.chunks_mut(tile.width as usize).collect();
+                    self.tile(&mut worker, tile, &mut rows);
+                    if self.cancel.load(Relaxed) {
+                        belt.stop();
+                        break;
+                    }
+                    bytes.clear();
+                    develop(pixels, &mut bytes);
+                    belt.put(tile, &bytes, take);
+                }
             }
         }
-        if let Some(wanted) = self.tiles {
-            let mut wanted = wanted.iter();
-            jobs.retain(|_| wanted.next() == Some(&true));
-        }
-        jobs
+        worker.tracer.counts
     }
+
+    /// Traces one tile into its rows.
+    fn tile<L: Lane>(&self, worker: &mut TileWorker<'_, L>, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
+        L::vectorize(
+            #[inline(always)]
+            || worker.render(tile, rows),
+        );
+        if !self.cancel.load(Relaxed) {
+            self.progress.finished(tile, rows);
+        }
+    }
+}
+
+/// Cuts `film` into the tiles of [`tiles_of`], those of them that are wanted.
+fn jobs<'f>(
+    options: &Options,
+    film: &'f mut Film,
+    wanted: Option<&[bool]>,
+    footprints: Option<&'f mut [Footprint]>,
+) -> Vec<Mutex<Job<'f>>> {
+    let (part, side) = (options.crop_or_all(), options.tile_side() as usize);
+    let mut footprints = footprints.map(|all| all.iter_mut());
+    let tiles = tiles_of(options).into_iter();
+    let mut jobs: Vec<Job<'f>> = tiles
+        .map(|tile| {
+            let footprint = footprints.as_mut().and_then(Iterator::next);
+            Job { tile, rows: Vec::with_capacity(tile.height as usize), footprint }
+        })
+        .collect();
+    let (columns, width) = ((part.width as usize).div_ceil(side), part.width as usize);
+    for (y, row) in film.pixels.chunks_mut(width).enumerate() {
+        let first = y / side * columns;
+        for (piece, job) in row.chunks_mut(side).zip(&mut jobs[first..]) {
+            job.rows.push(piece);
+        }
+    }
+    if let Some(wanted) = wanted {
+        let mut wanted = wanted.iter();
+        jobs.retain(|_| wanted.next() == Some(&true));
+    }
+    jobs.into_iter().map(Mutex::new).collect()
 }
 
 #[cfg(test)]
@@ -243,5 +324,35 @@ mod tests {
             assert!(best.rays.transmitted > 1000 && best.film == common.film);
             assert!(best.film == on(Instructions::Narrow).film);
         }
+    }
+
+    #[test]
+    fn rows_that_go_out_are_those_of_the_film() {
+        let scene = scene();
+        let world = World::build(&scene, &scene.cameras[0]);
+        let settings = Options { width: 61, height: 47, ..Options::from_settings(&scene.settings) };
+        let part = Some(Crop { x: 9, y: 5, width: 40, height: 33 });
+        let to_bytes = |pixels: &[[f32; 3]], out: &mut Vec<u8>| {
+            out.extend(pixels.as_flattened().iter().flat_map(|v| v.to_bits().to_le_bytes()));
+        };
+        let work = (&Silent as &dyn Progress, &AtomicBool::new(false));
+        for (threads, tile, crop) in [(1, 16, None), (2, 7, part), (8, 1, None), (3, 32, part)] {
+            let options = Options { threads: Some(threads), tile, crop, ..settings.clone() };
+            let whole = render(&world, &options, work.0, work.1).expect("not cancelled");
+            let mut out = Vec::new();
+            let mut take = |rows: &[u8]| {
+                out.extend_from_slice(rows);
+                Ok(())
+            };
+            let done = stream(&world, &options, work, (12, &to_bytes), &mut take).unwrap().expect("not cancelled");
+            let mut expected = Vec::new();
+            to_bytes(&whole.film.pixels, &mut expected);
+            assert!(out == expected && done.rays == whole.rays, "{threads} threads, tiles of {tile}");
+        }
+        let mut full = |_: &[u8]| Err(io::ErrorKind::StorageFull.into());
+        let fault = stream(&world, &settings, work, (12, &to_bytes), &mut full).unwrap_err();
+        assert_eq!(fault.kind(), io::ErrorKind::StorageFull);
+        let given_up = (work.0, &AtomicBool::new(true));
+        assert!(matches!(stream(&world, &settings, given_up, (12, &to_bytes), &mut |_| Ok(())), Ok(None)));
     }
 }

@@ -1,12 +1,12 @@
 //! The light that a tile's pixels gather.
 
-use super::batch::{Column3, PADDING};
+use super::batch::{Column, Column3, PADDING};
 use super::run::LaneGroup;
 use crate::math::real::Mask;
 use crate::math::{Elem, Lane};
 
 /// Where rays leave what they see.
-pub struct Gathered<'a, E> {
+pub struct Gathered<'a, E: Elem> {
     /// Of each pixel of the tile.
     pub radiance: &'a mut Column3<E>,
     /// Whether these rays are the first of their pixels: what is there is forgotten.
@@ -18,7 +18,7 @@ pub struct Gathered<'a, E> {
 impl<E: Elem> Gathered<'_, E> {
     /// Adds the value of each ray of `group` to its pixel, by `slots`.
     #[inline(always)]
-    pub fn add<L: Lane<Elem = E>>(&mut self, group: &LaneGroup, slots: &[E], value: [L; 3]) {
+    pub fn add<L: Lane<Elem = E>>(&mut self, group: &LaneGroup, slots: &Column<E>, value: [L; 3]) {
         let g = group.first as usize;
         if self.first && self.in_order {
             let m = L::Mask::from_bits(group.bits);

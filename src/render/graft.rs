@@ -4,7 +4,9 @@
 //! The picture doesn't depend on the tree's shape, only its time does: so when too much was grafted, the tree is built anew.
 
 use super::bounds::Bounds;
-use super::bvh::{Bvh, BvhNode};
+use super::bvh::Bvh;
+use super::bvh::node::{Box4, Child, Node};
+use std::sync::atomic::AtomicBool;
 
 /// Most grafts, one upon the other: each makes the tree deeper by one.
 pub const MOST_GRAFTS: usize = 16;
@@ -16,74 +18,60 @@ impl Bvh {
     /// The tree of the next world. `renumbered` has the new number of every primitive of this one, `u32::MAX` for those that
     /// are gone; `added` are the new ones. `None` where it is better built anew.
     pub fn grafted(&self, renumbered: &[u32], added: Vec<(u32, Bounds)>) -> Option<Bvh> {
-        let gone = self.leaves.iter().filter(|l| renumbered.get(l.0 as usize) == Some(&u32::MAX)).count();
+        let is_gone = |id: &u32| renumbered.get(*id as usize) == Some(&u32::MAX);
+        let gone = self.ids.iter().filter(|id| is_gone(id)).count();
         let changed = self.changed + gone + added.len();
-        if changed * MOST_CHANGED > self.leaves.len() || (self.grafts >= MOST_GRAFTS && !added.is_empty()) {
+        if changed * MOST_CHANGED > self.ids.len() || (self.grafts >= MOST_GRAFTS && !added.is_empty()) {
             return None;
         }
-        let mut tree = Bvh { changed, grafts: self.grafts, ..Bvh::default() };
+        let mut tree = Bvh { changed, grafts: self.grafts, fit: self.fit, bounds: self.bounds, ..Bvh::default() };
         if added.is_empty() {
             self.copy_kept(0, renumbered, &mut tree);
             return Some(tree);
         }
         tree.grafts += 1;
-        let graft = Bvh::build(added);
-        tree.nodes.push(BvhNode { bounds: Bounds::EMPTY, first: 0, count: 0 });
-        self.copy_kept(0, renumbered, &mut tree)?;
-        let second = tree.nodes.len();
-        tree.append(graft);
-        let bounds = tree.nodes[1].bounds.union(tree.nodes[second].bounds);
-        tree.nodes[0] = BvhNode { bounds, first: second as u32, count: 0 };
+        tree.nodes.push(Node::empty());
+        let kept = self.copy_kept(0, renumbered, &mut tree)?;
+        tree.nodes[0].set(0, kept, Child::node(1));
+        let bounds = added.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1));
+        let graft = Bvh::build_in(self.fit, bounds, added, u32::MAX, &AtomicBool::new(false))?;
+        let (second, ids) = (tree.nodes.len(), tree.ids.len());
+        tree.nodes[0].set(1, graft.nodes.first()?.around(), Child::node(second));
+        tree.nodes.extend(graft.nodes);
+        tree.nodes[second..].iter_mut().for_each(|n| n.renumber(second, ids));
+        tree.ids.extend(graft.ids);
+        tree.bounds = tree.bounds.union(graft.bounds);
         Some(tree)
     }
 
     /// Appends the part of this tree below node `at` to `to`, without what is gone; `None` where nothing is left of it.
-    fn copy_kept(&self, at: u32, renumbered: &[u32], to: &mut Bvh) -> Option<Bounds> {
-        let node = self.nodes.get(at as usize)?;
-        let (place, first) = (to.nodes.len(), to.leaves.len() as u32);
-        if node.count > 0 {
-            let mut bounds = Bounds::EMPTY;
-            for (id, b) in &self.leaves[node.first as usize..(node.first + node.count) as usize] {
-                let id = renumbered[*id as usize];
-                if id != u32::MAX {
-                    to.leaves.push((id, *b));
-                    bounds = bounds.union(*b);
+    fn copy_kept(&self, at: usize, renumbered: &[u32], to: &mut Bvh) -> Option<Box4> {
+        let node = self.nodes.get(at)?;
+        let (place, mut left) = (to.nodes.len(), 0);
+        to.nodes.push(Node::empty());
+        for (slot, child) in node.children() {
+            let (kept, bounds) = if child.is_leaf() {
+                let first = to.ids.len();
+                let renumbered = self.ids_of(child).iter().filter_map(|id| renumbered.get(*id as usize));
+                to.ids.extend(renumbered.filter(|id| **id != u32::MAX));
+                let count = to.ids.len() - first;
+                if count == 0 {
+                    continue;
                 }
-            }
-            let count = to.leaves.len() as u32 - first;
-            (count > 0).then(|| to.nodes.push(BvhNode { bounds, first, count }))?;
-            return Some(bounds);
+                (Child::leaf(first, count), node.box_of(slot))
+            } else {
+                let next = to.nodes.len();
+                let Some(bounds) = self.copy_kept(child.at(), renumbered, to) else { continue };
+                (Child::node(next), bounds)
+            };
+            to.nodes[place].set(left, bounds, kept);
+            left += 1;
         }
-        to.nodes.push(*node);
-        let left = self.copy_kept(at + 1, renumbered, to);
-        if left.is_none() {
-            // The other child takes the place of this node.
+        if left == 0 {
             to.nodes.truncate(place);
-            return self.copy_kept(node.first, renumbered, to);
+            return None;
         }
-        let second = to.nodes.len() as u32;
-        let right = self.copy_kept(node.first, renumbered, to);
-        match (left, right) {
-            (Some(a), Some(b)) => {
-                to.nodes[place] = BvhNode { bounds: a.union(b), first: second, count: 0 };
-                Some(a.union(b))
-            }
-            (left, _) => {
-                // The first child, which follows it directly, takes its place: all of it moves up by one.
-                to.nodes.remove(place);
-                to.nodes[place..].iter_mut().filter(|n| n.count == 0).for_each(|n| n.first -= 1);
-                left
-            }
-        }
-    }
-
-    fn append(&mut self, other: Bvh) {
-        let (nodes, leaves) = (self.nodes.len() as u32, self.leaves.len() as u32);
-        self.nodes.extend(other.nodes.into_iter().map(|n| {
-            let offset = if n.count == 0 { nodes } else { leaves };
-            BvhNode { first: n.first + offset, ..n }
-        }));
-        self.leaves.extend(other.leaves);
+        Some(to.nodes[place].around())
     }
 }
 
@@ -100,12 +88,14 @@ mod tests {
         (id, Bounds::around([0, 1, 2].map(|k| random(seed, k) * 100.0), [1.0; 3]))
     }
 
-    /// Boxes hold what lies below them, every primitive is found once, and a ray's way finds what a plain search does.
+    /// Leaves hold their primitives, each of which is there once, and boxes all that lies below them: a search through them
+    /// finds what a plain one does.
     fn check(tree: &Bvh, expected: &mut [(u32, Bounds)]) {
-        let mut leaves = tree.leaves.clone();
+        let mut leaves: Vec<(u32, Bounds)> = tree.leaves().collect();
         leaves.sort_by_key(|l| l.0);
         expected.sort_by_key(|l| l.0);
-        assert_eq!(leaves, expected);
+        assert!(leaves.iter().map(|l| l.0).eq(expected.iter().map(|l| l.0)));
+        assert!(leaves.iter().zip(&*expected).all(|(leaf, own)| leaf.1.union(own.1) == leaf.1));
         for k in 0..50 {
             let region = Bounds::around([0, 1, 2].map(|c| random(k, 90 + c) * 100.0), [15.0; 3]);
             let mut found = Vec::new();

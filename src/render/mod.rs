@@ -6,11 +6,13 @@
 //! meet.
 
 pub mod batch;
+mod belt;
 pub mod bounds;
 pub mod bvh;
 pub mod camera;
 mod candidates;
 mod census;
+mod crew;
 pub mod cull;
 mod digest;
 mod dispatch;
@@ -43,8 +45,8 @@ mod touch;
 mod tracer;
 pub mod world;
 
-pub use dispatch::{instructions, render};
-pub use options::{Crop, Feature, Instructions, Options, Probe, Progress, RayCounts, Rendered, Silent};
+pub use dispatch::{Develop, instructions, render, stream};
+pub use options::{Crop, Feature, Instructions, Options, Probe, Progress, RayCounts, Rendered, Silent, Streamed};
 pub use probe::probe;
 pub use retrace::{Built, Plan, Retraced, Retracer};
 pub use search::Search;

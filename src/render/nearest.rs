@@ -117,7 +117,7 @@ impl<L: Lane> Nearest<L> {
                 world.bvh.traverse(
                     start.o,
                     start.d,
-                    self.t,
+                    L::select(start.live, self.t, -L::one()),
                     #[inline(always)]
                     |k| {
                         self.test_all(world, &[k], start);

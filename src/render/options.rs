@@ -21,7 +21,7 @@ pub struct Options {
     pub crop: Option<Crop>,
     /// Worker threads; `None` for one a core. Never changes a bit of the picture.
     pub threads: Option<usize>,
-    /// Side of a tile in pixels, 1 to 32; for tests: never changes a bit of the picture.
+    /// Side of a tile in pixels, 1 to 16; for tests: never changes a bit of the picture.
     pub tile: u32,
     /// Instructions of the processor; for tests: never changes a bit of the picture.
     pub instructions: Instructions,
@@ -62,13 +62,13 @@ impl Options {
             precision: s.precision,
             crop: None,
             threads: None,
-            tile: 16, // the best size measured: its rays and hits stay in the first-level cache
+            tile: 16, // the best size measured: its rays and hits stay in the first-level cache, and fill a batch
             instructions: Instructions::Best,
         }
     }
     /// Side of a tile, within what batches have room for.
     pub fn tile_side(&self) -> u32 {
-        self.tile.clamp(1, 32)
+        self.tile.clamp(1, 16)
     }
     /// The part that is made, written out.
     pub fn crop_or_all(&self) -> Crop {
@@ -119,6 +119,15 @@ impl RayCounts {
 pub struct Rendered {
     /// Linear light; of the crop's size where there is one.
     pub film: Film,
+    /// Rays by kind.
+    pub rays: RayCounts,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+/// A finished picture that went out row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streamed {
     /// Rays by kind.
     pub rays: RayCounts,
     /// Threads that worked.

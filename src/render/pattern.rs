@@ -163,11 +163,19 @@ impl PatternTable {
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Noise(a, b, octaves, seed) => {
-                let [s] = R::each(p, |p| [clamp01(unit_noise(p, *octaves, *seed))]);
+                let [s] = R::each(
+                    p,
+                    #[inline(always)]
+                    |p| [clamp01(unit_noise(p, *octaves, *seed))],
+                );
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Cells(a, b, seed) => {
-                let [s] = R::each(p, |p| [clamp01(cell_noise(p, *seed))]);
+                let [s] = R::each(
+                    p,
+                    #[inline(always)]
+                    |p| [clamp01(cell_noise(p, *seed))],
+                );
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Brick(mortar, brick, size, gap) => {
@@ -176,19 +184,26 @@ impl PatternTable {
             }
             PatternNode::Image { texture, mapping, filter, turn, turn_normal } => {
                 let texture = &self.textures[*texture as usize];
-                let read = |uv: [f64; 2], edges| texture.at(uv[0], uv[1], *filter, edges);
-                match mapping {
-                    Mapping::Planar { axis } => R::each(p, |p| read(planar(p, *axis), [Edge::Repeat; 2])),
-                    Mapping::Normal => {
-                        R::each(apply_linear(turn_normal, at.normal), |n| read(by_normal(n), [Edge::Clamp; 2]))
+                let (v, edges): ([R; 3], _) = match mapping {
+                    Mapping::Planar { .. } => (p, [Edge::Repeat; 2]),
+                    Mapping::Normal => (apply_linear(turn_normal, at.normal), [Edge::Clamp; 2]),
+                    Mapping::Spherical | Mapping::Cylindrical => {
+                        (apply_linear(turn, at.from_centre), [Edge::Repeat, Edge::Clamp])
                     }
-                    Mapping::Spherical => {
-                        R::each(apply_linear(turn, at.from_centre), |v| read(spherical(v), [Edge::Repeat, Edge::Clamp]))
-                    }
-                    Mapping::Cylindrical => R::each(apply_linear(turn, at.from_centre), |v| {
-                        read([longitude(v), 0.5 + 0.5 * v[1] / at.half_height], [Edge::Repeat, Edge::Clamp])
-                    }),
-                }
+                };
+                R::each(
+                    v,
+                    #[inline(always)]
+                    |v| {
+                        let [x, y] = match mapping {
+                            Mapping::Planar { axis } => planar(v, *axis),
+                            Mapping::Normal => by_normal(v),
+                            Mapping::Spherical => spherical(v),
+                            Mapping::Cylindrical => [longitude(v), 0.5 + 0.5 * v[1] / at.half_height],
+                        };
+                        texture.at(x, y, *filter, edges)
+                    },
+                )
             }
             PatternNode::Mix(a, b, by) => {
                 let share = self.eval(*by, at);
@@ -201,10 +216,14 @@ impl PatternTable {
             }
             PatternNode::Mapped(child, rows) => self.eval(*child, &PatternPoint { p: apply(rows, p), ..*at }),
             PatternNode::Turbulence(child, amount, octaves, seed) => {
-                let moved = R::each(p, |p| {
-                    let v = vector_noise(p, *octaves, *seed);
-                    std::array::from_fn(|i| p[i] + amount * v[i])
-                });
+                let moved = R::each(
+                    p,
+                    #[inline(always)]
+                    |p| {
+                        let v = vector_noise(p, *octaves, *seed);
+                        three!(i => p[i] + amount * v[i])
+                    },
+                );
                 self.eval(*child, &PatternPoint { p: moved, ..*at })
             }
             PatternNode::Add(a, b) => {

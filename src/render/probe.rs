@@ -15,14 +15,14 @@ use crate::math::real::{Bool, dot, minus, scaled};
 /// What the ray through the middle of pixel (x, y) sees; `None` for the background.
 pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> {
     let (o, d) = world.camera.grid(options).ray::<f64>(x as f64 + 0.5, y as f64 + 0.5);
-    let mut rays = RayBatch::<f64>::new(1);
+    let mut rays = RayBatch::<f64>::default();
     for c in 0..3 {
         (rays.o[c][0], rays.d[c][0]) = (o[c], d[c]);
     }
     (rays.source[0], rays.len) = (NONE, 1);
     let mut everything = Candidates::default();
     everything.gather(world, |_| true, |_, _| true);
-    let mut hits = HitColumns::<f64>::new(1);
+    let mut hits = HitColumns::<f64>::default();
     nearest::<f64, false>(world, &everything, &rays, &mut hits);
     if hits.id[0] == NONE {
         return None;

@@ -3,7 +3,7 @@
 //! Neighbouring rays mostly meet the same thing, so most registers belong to one run. Where a run is sparse, as behind a mirror
 //! ball, it is packed first.
 
-use super::batch::NONE;
+use super::batch::{Column, NONE};
 use super::world::World;
 use crate::math::real::Mask;
 use crate::math::{Elem, Lane};
@@ -89,7 +89,7 @@ impl Runs {
 
     /// Sorts the first `n` rays by what they met.
     #[inline(always)]
-    pub fn sort<L: Lane>(&mut self, world: &World, ids: &[L::Elem], n: usize) {
+    pub fn sort<L: Lane>(&mut self, world: &World, ids: &Column<L::Elem>, n: usize) {
         self.missed.clear();
         self.used = 0;
         let none = L::splat(NONE);

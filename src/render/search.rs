@@ -1,9 +1,11 @@
 //! Whether the tree finds what testing every surface finds: the same t, to the bit, and the same surface.
 
-use super::batch::{HitColumns, NONE, RayBatch};
+use super::batch::{HitColumns, MOST, NONE, RayBatch};
 use super::bounds::{Bounds, larger};
 use super::candidates::Candidates;
+use super::frame::Axes;
 use super::nearest::nearest;
+use super::shape::Kind;
 use super::world::World;
 use crate::math::hash::KeyedHash;
 use crate::math::real::three;
@@ -28,12 +30,14 @@ impl Search {
         let planes: Vec<u32> = world.unbounded.iter().map(|p| p.id).collect();
         let by_tree = Candidates { ids: planes, tree: true };
         let by_list = Candidates { ids: (0..world.primitives.len() as u32).collect(), tree: false };
+        // Their own, for the tree's are a little wider: a ray is to run along the very face.
+        let boxes: Vec<Bounds> = world.bvh.leaves().map(|(id, b)| box_of(world, id).unwrap_or(b)).collect();
         let mut search = Search::default();
-        let (mut batch, mut found) = (RayBatch::<f64>::new(ROOM), [HitColumns::new(ROOM), HitColumns::new(ROOM)]);
+        let (mut batch, mut found) = (RayBatch::<f64>::default(), [HitColumns::default(), HitColumns::default()]);
         while search.rays < rays {
-            batch.len = (rays - search.rays).min(ROOM as u64) as usize;
+            batch.len = (rays - search.rays).min(MOST as u64) as usize;
             for i in 0..batch.len {
-                let (o, d) = ray(world, KeyedHash::new().with(lot).with(search.rays + i as u64));
+                let (o, d) = ray(&boxes, KeyedHash::new().with(lot).with(search.rays + i as u64));
                 for c in 0..3 {
                     (batch.o[c][i], batch.d[c][i]) = (o[c], d[c]);
                 }
@@ -59,14 +63,10 @@ impl Search {
 /// Rays run along an axis plane, or at a larger angle than this to it: 2^-40, thousands of roundings.
 const LEAST_ANGLE: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Rays at a time.
-const ROOM: usize = 256;
-
 /// Origin and direction.
-fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
-    let leaves = world.bvh.leaves();
+fn ray(boxes: &[Bounds], key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     let unit = |k: u64| key.with(k).unit();
-    let pick = |k: u64| leaves.get((unit(k) * leaves.len() as f64) as usize).map_or(ANYWHERE, |l| l.1);
+    let pick = |k: u64| boxes.get((unit(k) * boxes.len() as f64) as usize).copied().unwrap_or(ANYWHERE);
     // A coordinate between the faces of the box, on one of them, or beyond them by up to its size.
     let within = |b: Bounds, k: u64, spread: f64| {
         three!(i => {
@@ -89,6 +89,31 @@ fn ray(world: &World, key: KeyedHash) -> ([f64; 3], [f64; 3]) {
     let longest = d.iter().map(|x| x.abs()).fold(0.0, larger);
     let d = d.map(|x| if x.abs() < LEAST_ANGLE * longest { 0.0 } else { x });
     (o, if d == [0.0; 3] { [0.0, 0.0, -1.0] } else { d })
+}
+
+/// The box of a shape whose frame has the world's axes, or of a triangle.
+fn box_of(world: &World, id: u32) -> Option<Bounds> {
+    let primitive = world.primitives.get(id as usize)?;
+    let r = |r: f64| Some([[0.0; 3], [r; 3]]);
+    let extent = match &primitive.kind {
+        Kind::Sphere(radius) => r(*radius),
+        Kind::Disc { r, .. } => Some([[0.0; 3], [*r, 0.0, *r]]),
+        Kind::Cuboid(half) => Some([[0.0; 3], *half]),
+        Kind::Tube(t) => {
+            let widest = larger(t.radius + t.slope * t.bottom, t.radius + t.slope * t.top);
+            Some([[0.0, 0.5 * (t.bottom + t.top), 0.0], [widest, 0.5 * (t.top - t.bottom), widest]])
+        }
+        Kind::Ring(ring) => {
+            let (far, tube) = ((ring.r + ring.tube) / ring.scale, ring.tube / ring.scale);
+            Some([[0.0; 3], [far, tube, far]])
+        }
+        Kind::Triangle(i) => return Some(Bounds::of_points(world.triangles.get(*i as usize)?.v)),
+        Kind::Plane => None,
+    };
+    let ([centre, half], Axes::Cyclic(_)) = (extent?, primitive.frame.axes) else { return None };
+    let place = |v: [f64; 3]| primitive.frame.vector_to_world(&world.maps, v);
+    let (c, half) = (place(centre), place(half));
+    Some(Bounds::around(three!(i => c[i] + primitive.frame.centre[i]), half))
 }
 
 /// For a world without bounded surfaces.

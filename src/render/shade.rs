@@ -1,6 +1,6 @@
 //! Shades the hits of one run: points and normals first, then light by light, then colour and the rays that follow.
 
-use super::batch::{Column, Column3, HitColumns, RayBatch, column, column3, load3, store3};
+use super::batch::{Column, Column3, HitColumns, RayBatch, load3, store3};
 use super::bounds::Bounds;
 use super::candidates::Candidates;
 use super::cull::{Shaft, margin};
@@ -24,7 +24,7 @@ use crate::math::{Elem, Lane};
 
 /// The hits of one run.
 #[derive(Clone, Copy)]
-pub struct Hits<'a, E> {
+pub struct Hits<'a, E: Elem> {
     /// The primitive that stands for all that were met.
     pub flock: u32,
     /// The rays.
@@ -36,7 +36,8 @@ pub struct Hits<'a, E> {
 }
 
 /// What shading keeps of each hit between its passes, at the ray's own place.
-pub struct ShadeScratch<E> {
+#[derive(Default)]
+pub struct ShadeScratch<E: Elem> {
     p: Column3<E>,
     /// Geometric normal on the viewer's side.
     n: Column3<E>,
@@ -56,20 +57,9 @@ pub struct ShadeScratch<E> {
 }
 
 impl<E: Elem> ShadeScratch<E> {
-    /// Room for batches of `n` rays.
-    pub fn new(n: usize, recorder: Recorder) -> Self {
-        ShadeScratch {
-            p: column3(n),
-            n: column3(n),
-            ns: column3(n),
-            local: column3(n),
-            offset: column(n),
-            inside: column(n),
-            spaces: Vec::new(),
-            shadow: Shadow::default(),
-            occluders: Vec::new(),
-            recorder,
-        }
+    /// Keeps nothing yet.
+    pub fn new(recorder: Recorder) -> Self {
+        ShadeScratch { recorder, ..ShadeScratch::default() }
     }
 }
 
@@ -99,7 +89,7 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
 }
 
 /// A run and what all its hits have in common.
-struct RunOfHits<'a, E> {
+struct RunOfHits<'a, E: Elem> {
     world: &'a World,
     surfacing: &'a Surfacing,
     frame: PatternFrame<'a>,

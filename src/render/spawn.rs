@@ -9,7 +9,7 @@ use crate::math::{Elem, Lane};
 use crate::scene::range::BRIGHTEST;
 
 /// Where rays go that leave the surface.
-pub struct Children<'a, E> {
+pub struct Children<'a, E: Elem> {
     /// Mirrored ones.
     pub mirrored: &'a mut RayBatch<E>,
     /// Those that go through.

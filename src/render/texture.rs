@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub struct Texture {
     width: usize,
     height: usize,
-    texels: Arc<[[u8; 3]]>,
+    texels: Arc<Vec<[u8; 3]>>,
     linear: Box<[f64; 256]>,
 }
 
@@ -40,6 +40,7 @@ impl Texture {
 
     /// The linear colour at (u, v); (0, 0) is the lower left corner of the picture, (1, 1) the upper right. A coordinate that
     /// isn't finite, as of a point too far away for a number, counts as the picture's left or upper edge.
+    #[inline(always)]
     pub fn at(&self, u: f64, v: f64, filter: Filter, edges: [Edge; 2]) -> [f64; 3] {
         let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
         let (x, y) = (finite(u * self.width as f64), finite((1.0 - v) * self.height as f64));
@@ -58,7 +59,7 @@ impl Texture {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn texel(&self, x: f64, y: f64, edges: [Edge; 2]) -> [f64; 3] {
         let (i, j) = (index(x, self.width, edges[0]), index(y, self.height, edges[1]));
         self.texels[j * self.width + i].map(|c| self.linear[c as usize])
@@ -66,7 +67,7 @@ impl Texture {
 }
 
 /// The texel number for a whole number `x`; NaN counts as 0.
-#[inline]
+#[inline(always)]
 fn index(x: f64, n: usize, edge: Edge) -> usize {
     if x >= 0.0 && x < n as f64 {
         return x as usize;

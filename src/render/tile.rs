@@ -39,7 +39,7 @@ impl<'w, L: Lane> TileWorker<'w, L> {
     /// A worker for tiles of up to [`Options::tile_side`]² pixels.
     pub fn new(world: &'w World, options: &Options, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         let n = (options.tile_side() * options.tile_side()) as usize;
-        let mut tracer = Tracer::new(world, options.max_depth, n, cancel, recorder);
+        let mut tracer = Tracer::new(world, options.max_depth, cancel, recorder);
         let grid = world.camera.grid(options);
         let batch = tracer.camera_rays();
         // What all camera rays have in common is written once.

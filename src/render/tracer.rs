@@ -5,7 +5,7 @@
 //! batch: every pixel adds up its contributions in the order own, mirrored, transmitted, down its tree of rays, whatever
 //! batch its rays travelled in. So tiles, crops and threads can't change a bit.
 
-use super::batch::{Column3, HitColumns, NONE, RayBatch, column3};
+use super::batch::{Column3, HitColumns, NONE, RayBatch};
 use super::candidates::{Candidates, narrow_to_batch};
 use super::footprint::Recorder;
 use super::gathered::Gathered;
@@ -37,50 +37,35 @@ pub struct Tracer<'w, L: Lane> {
     packed: Run,
     /// Rays traced so far.
     pub counts: RayCounts,
-    capacity: usize,
 }
 
-/// The rays of one depth.
-struct Level<E> {
-    rays: RayBatch<E>,
-    hits: HitColumns<E>,
+/// The rays of one depth. Batches are exchanged with the depth below, hence the boxes.
+#[derive(Default)]
+struct Level<E: Elem> {
+    rays: Box<RayBatch<E>>,
+    hits: Box<HitColumns<E>>,
     /// Rays and hits of a sparse run, packed.
-    run: RayBatch<E>,
-    run_hits: HitColumns<E>,
-    mirrored: RayBatch<E>,
-    transmitted: RayBatch<E>,
-}
-
-impl<E: Elem> Level<E> {
-    fn new(n: usize) -> Level<E> {
-        Level {
-            rays: RayBatch::new(n),
-            hits: HitColumns::new(n),
-            run: RayBatch::new(n),
-            run_hits: HitColumns::new(n),
-            mirrored: RayBatch::new(n),
-            transmitted: RayBatch::new(n),
-        }
-    }
+    run: Box<RayBatch<E>>,
+    run_hits: Box<HitColumns<E>>,
+    mirrored: Box<RayBatch<E>>,
+    transmitted: Box<RayBatch<E>>,
 }
 
 impl<'w, L: Lane> Tracer<'w, L> {
-    /// A tracer for batches of up to `capacity` rays, `max_depth` reflections and transmissions deep.
-    /// It stops within a batch once `cancel` is set, and notes what rays do in `recorder`.
-    pub fn new(world: &'w World, max_depth: u32, capacity: usize, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
+    /// A tracer of rays that go on for up to `max_depth` reflections and transmissions. It stops within a batch once `cancel` is set, and notes what rays do in `recorder`.
+    pub fn new(world: &'w World, max_depth: u32, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         Tracer {
             world,
             cancel,
             max_depth: max_depth as usize,
-            levels: vec![Level::new(capacity)],
-            radiance: column3(capacity),
+            levels: vec![Level::default()],
+            radiance: Default::default(),
             candidates: Candidates::default(),
             narrowed: Candidates::default(),
-            scratch: ShadeScratch::new(capacity, recorder),
+            scratch: ShadeScratch::new(recorder),
             runs: Runs::new(world.primitives.len()),
             packed: Run::default(),
             counts: RayCounts::default(),
-            capacity,
         }
     }
 
@@ -128,7 +113,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
             }
             level += 1;
             if self.levels.len() == level {
-                self.levels.push(Level::new(self.capacity)); // once a depth, not once a ray
+                self.levels.push(Level::default()); // once a depth, not once a ray
             }
             let (above, below) = self.levels.split_at_mut(level);
             let parent = &mut above[level - 1];

@@ -186,8 +186,10 @@ impl World {
         }
         // Boxes are relative to the camera's place.
         let before = before.filter(|(old, _)| old.eye == world.eye);
-        world.bvh =
-            before.and_then(|b| grafted(b, &keys, &bounded)).unwrap_or_else(|| Bvh::build_unless(bounded, cancel));
+        world.bvh = match before.and_then(|b| grafted(b, &keys, &bounded)) {
+            Some(tree) => tree,
+            None => Bvh::build_unless(bounded, u32::MAX, cancel)?,
+        };
         if go_on().is_break() {
             return None;
         }
@@ -329,8 +331,8 @@ impl World {
     /// The same world, but with every ray tested against every surface: what the tree must not change. For tests.
     pub fn without_tree(mut self) -> World {
         // Planes of which nothing can say that a ray doesn't meet them.
-        let everywhere = |&(id, _): &(u32, Bounds)| Unbounded { id, n: [0.0; 3], offset: 0.0 };
-        self.unbounded.extend(self.bvh.leaves().iter().map(everywhere));
+        let everywhere = |(id, _): (u32, Bounds)| Unbounded { id, n: [0.0; 3], offset: 0.0 };
+        self.unbounded.extend(self.bvh.leaves().map(everywhere));
         self.bvh = Bvh::default();
         self
     }

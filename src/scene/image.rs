@@ -19,5 +19,5 @@ pub struct Image {
     /// Texels down; at least 1.
     pub height: u32,
     /// `width × height` texels, row by row; shared by all scenes that show the file.
-    pub texels: Arc<[[u8; 3]]>,
+    pub texels: Arc<Vec<[u8; 3]>>,
 }

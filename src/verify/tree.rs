@@ -1,7 +1,7 @@
 //! The tree of boxes finds what testing every shape finds: the same t, bit for bit, of the same shape.
 //!
 //! Shapes stand on a grid of whole numbers, so that faces coincide and boxes touch, and rays come from within and from up to 2^30
-//! away. The tree's boxes are `f64`; there are no others.
+//! away. The tree's boxes are `f32`, rounded outwards.
 
 use super::draw::{Draw, power, unit};
 use super::tally::{Tally, count};

@@ -1,9 +1,8 @@
 //! Whether a picture is what it was, and where not.
 
 use super::mark::entries;
-use crate::film::Recipe;
+use crate::film::{Picture, Recipe, read};
 use crate::scene::range::MOST_PIXELS;
-use image::RgbImage;
 use std::io::{self, Cursor};
 
 /// How a committed picture and a new one differ.
@@ -39,8 +38,8 @@ pub fn compare(was: &[u8], is: &[u8]) -> Option<(Difference, Option<Panels>)> {
         return None;
     }
     let (Some(old), Some(new)) = (decoded(was), decoded(is)) else { return Some((Difference::Unreadable, None)) };
-    if old.dimensions() != new.dimensions() {
-        let size = |p: &RgbImage| [p.width(), p.height()];
+    let size = |p: &Picture| [p.width, p.height];
+    if size(&old) != size(&new) {
         let panels = Panels::of(&[&old, &new], "was, is");
         return Some((Difference::Size(size(&old), size(&new)), Some(panels)));
     }
@@ -49,10 +48,9 @@ pub fn compare(was: &[u8], is: &[u8]) -> Option<(Difference, Option<Panels>)> {
         return Some((Difference::Recipe(changed_entries(was, is)), None));
     }
     let factor = u8::MAX / numbers.largest;
-    let mut difference = new.clone();
-    for (d, (a, b)) in difference.iter_mut().zip(old.iter().zip(new.iter())) {
-        *d = a.abs_diff(*b) * factor;
-    }
+    let off = |(a, b): (&[u8; 3], &[u8; 3])| std::array::from_fn(|c| a[c].abs_diff(b[c]) * factor);
+    let texels = old.texels.iter().zip(new.texels.iter()).map(off).collect();
+    let difference = Picture { texels, ..new };
     let panels = Panels::of(&[&old, &new, &difference], &format!("was, is, difference x {factor}"));
     Some((Difference::Pixels(numbers), Some(panels)))
 }
@@ -62,27 +60,20 @@ pub fn alone(is: &[u8]) -> Option<Panels> {
     decoded(is).map(|new| Panels::of(&[&new], "is"))
 }
 
-/// Bytes of the largest pixel that a PNG file can have: four channels of 16 bits.
-const PIXEL_BYTES: u64 = 8;
-
-/// The picture in a PNG file, as large as any that this program makes.
-fn decoded(file: &[u8]) -> Option<RgbImage> {
-    let mut reader = image::ImageReader::with_format(Cursor::new(file), image::ImageFormat::Png);
-    let mut limits = image::Limits::default();
-    limits.max_alloc = Some(MOST_PIXELS * PIXEL_BYTES);
-    reader.limits(limits);
-    Some(reader.decode().ok()?.into_rgb8())
+/// The picture in a file, as large as any that this program makes.
+fn decoded(file: &[u8]) -> Option<Picture> {
+    read(file, |width, height| u64::from(width) * u64::from(height) <= MOST_PIXELS).ok()
 }
 
-fn numbers(old: &RgbImage, new: &RgbImage) -> Numbers {
+fn numbers(old: &Picture, new: &Picture) -> Numbers {
     let (mut differing, mut largest, mut squares) = (0, 0, 0u64);
-    for (a, b) in old.pixels().zip(new.pixels()) {
-        let off = [0, 1, 2].map(|c| a.0[c].abs_diff(b.0[c]));
+    for (a, b) in old.texels.iter().zip(new.texels.iter()) {
+        let off = [0, 1, 2].map(|c| a[c].abs_diff(b[c]));
         differing += u64::from(off != [0; 3]);
         largest = off.into_iter().fold(largest, u8::max);
         squares += off.iter().map(|&d| d as u64 * d as u64).sum::<u64>();
     }
-    let all = old.width() as u64 * old.height() as u64;
+    let all = old.texels.len() as u64;
     Numbers { differing, all, largest, rmse: (squares as f64 / (3 * all) as f64).sqrt() }
 }
 
@@ -99,7 +90,9 @@ fn changed_entries(was: &[u8], is: &[u8]) -> Vec<String> {
 /// Pictures beside each other.
 #[derive(Clone, Debug)]
 pub struct Panels {
-    picture: RgbImage,
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 3]>,
     /// What they are, from left to right.
     pub legend: String,
 }
@@ -112,16 +105,19 @@ const GAP_GRAY: u8 = 128;
 const LEGEND: &str = "rtdsl:panels";
 
 impl Panels {
-    fn of(pictures: &[&RgbImage], legend: &str) -> Panels {
-        let width: u32 = pictures.iter().map(|p| p.width() + GAP).sum::<u32>() - GAP;
-        let height = pictures.iter().map(|p| p.height()).max().unwrap_or(0);
-        let mut all = RgbImage::from_pixel(width, height, image::Rgb([GAP_GRAY; 3]));
+    fn of(pictures: &[&Picture], legend: &str) -> Panels {
+        let width: u32 = pictures.iter().map(|p| p.width + GAP).sum::<u32>() - GAP;
+        let height = pictures.iter().map(|p| p.height).max().unwrap_or(0);
+        let mut pixels = vec![[GAP_GRAY; 3]; width as usize * height as usize];
         let mut x = 0;
         for p in pictures {
-            image::imageops::replace(&mut all, *p, x, 0);
-            x += (p.width() + GAP) as i64;
+            let across = p.width as usize;
+            for (row, texels) in pixels.chunks_exact_mut(width as usize).zip(p.texels.chunks_exact(across)) {
+                row[x..x + across].copy_from_slice(texels);
+            }
+            x += across + GAP as usize;
         }
-        Panels { picture: all, legend: legend.to_string() }
+        Panels { width, height, pixels, legend: legend.to_string() }
     }
 
     /// The PNG file.
@@ -130,13 +126,13 @@ impl Panels {
     /// Those of the encoder.
     pub fn file(&self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.picture.width(), self.picture.height());
+        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         for (name, value) in Recipe::new().with(LEGEND, &self.legend).entries() {
             encoder.add_text_chunk(name.into(), value.into())?;
         }
-        encoder.write_header()?.write_image_data(self.picture.as_raw())?;
+        encoder.write_header()?.write_image_data(self.pixels.as_flattened())?;
         Ok(bytes)
     }
 }
@@ -180,8 +176,8 @@ mod tests {
         let file = panels.file().unwrap();
         assert!(is_panels(&file) && !is_panels(&super::tests::file(4, 1.0, "a")));
         let picture = decoded(&file).unwrap();
-        assert_eq!(picture.dimensions(), (3 * 4 + 2 * GAP, 2));
-        let at = |x: u32| picture.get_pixel(x, 0).0;
+        assert_eq!((picture.width, picture.height), (3 * 4 + 2 * GAP, 2));
+        let at = |x: u32| picture.texels[x as usize];
         assert_eq!(
             [at(0), at(4), at(4 + GAP), at(2 * (4 + GAP))],
             [[255, 255, 0], [GAP_GRAY; 3], [188, 255, 0], [67 * 3, 0, 0]]

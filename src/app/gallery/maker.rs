@@ -13,7 +13,7 @@ use crate::app::progress::Bar;
 use crate::app::render::spares_sources;
 use crate::app::view::precision_word;
 use crate::diag::Diagnostic;
-use crate::film::{self, Depth, Film, Format, Recipe};
+use crate::film::{self, Film, Format, Recipe};
 use crate::lang::{self, Evaluated, Memory};
 use crate::render::{self, Retracer};
 use crate::scene::range;
@@ -171,7 +171,7 @@ fn of_a_thumbnail(film: &Film) -> Recipe {
 /// The bytes of a PNG file with 8 bits a channel.
 pub fn png(film: &Film, recipe: &Recipe) -> io::Result<Vec<u8>> {
     let mut memory = Cursor::new(Vec::new());
-    film::encode(film, Format::Png(Depth::Eight), recipe, &mut memory)?;
+    film::encode(film, Format::PNG, recipe, &mut memory)?;
     Ok(memory.into_inner())
 }
 

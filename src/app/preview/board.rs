@@ -274,7 +274,7 @@ impl From<&Param> for Setting {
 
 /// `#rrggbb`, the nearest that a screen shows.
 fn hex(color: Color) -> String {
-    let table = Developer::new(Depth::Eight);
+    let table = Developer::of(Depth::Eight);
     let code = |v: f64| table.code(v as f32);
     let [r, g, b] = color.0.map(code);
     format!("#{r:02x}{g:02x}{b:02x}")

@@ -86,9 +86,10 @@ impl<W: Seek> Seek for Tied<'_, W> {
 mod tests {
     use super::*;
     use crate::app::watch::desk::{Desk, Order, Urgency};
-    use crate::film::Depth;
+    use crate::film::{Compression, Depth};
 
-    const FORMATS: [Format; 4] = [Format::Png(Depth::Eight), Format::Png(Depth::Sixteen), Format::Exr, Format::Hdr];
+    const FORMATS: [Format; 4] =
+        [Format::PNG, Format::Png(Depth::Sixteen, Compression::Fast), Format::Exr, Format::Hdr];
 
     #[test]
     fn the_same_bytes_or_none() {

@@ -19,7 +19,7 @@ use super::picture::format_of;
 use super::preview::{self, Ask, Board};
 use super::{Exit, Stop};
 use crate::diag::Diagnostic;
-use crate::film::{Format, OutputFile};
+use crate::film::{Compression, Format, OutputFile};
 use desk::{Desk, Order, Urgency};
 use follower::Follower;
 use interrupt::{AtEnd, Unwhole};
@@ -145,7 +145,7 @@ fn output(args: &WatchArgs, is_served: bool) -> Result<Option<(PathBuf, Format)>
             None => return Err(Stop::usage(Diagnostic::error(format!("`{name}` names no file")))),
         },
     };
-    let format = format_of(&path, args.bits)?;
+    let format = format_of(&path, (args.bits, Compression::Fast))?;
     OutputFile::new(&path).map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))?;
     Ok(Some((path, format)))
 }

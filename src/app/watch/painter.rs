@@ -12,7 +12,7 @@ use crate::app::args::WatchArgs;
 use crate::app::picture::{fits, look, recipe_of};
 use crate::app::progress::Bar;
 use crate::app::render::target;
-use crate::film::{Depth, Film, Format, Recipe};
+use crate::film::{Film, Format, Recipe};
 use crate::lang::{self, Dependency, Evaluated, Failure, Input, Memory, Request};
 use crate::render::{Built, Options, Plan, Retraced, Retracer};
 use crate::scene::Camera;
@@ -221,7 +221,7 @@ impl<'w> Painter<'w> {
         let render_seconds = render_start.elapsed().as_secs_f64();
 
         let recipe = recipe_of(&s.evaluated, &s.options, &s.camera);
-        let png = Format::Png(Depth::Eight);
+        let png = Format::PNG;
         let shown = match self.show.is_on() {
             true => Some(encode(&film, png, &recipe, leash).ok_or(None)?.map_err(Stop::from)?),
             false => None,
@@ -291,9 +291,9 @@ impl<'w> Painter<'w> {
         let Some((path, format)) = &self.output else { return Ok(None) };
         let name = path.display().to_string();
         let fault = |e| Some(Stop::system(format!("`{name}` can't be written"), e));
-        let file = match (png, format) {
-            (Some(file), Format::Png(Depth::Eight)) => file,
-            _ => encode(film, *format, recipe, leash).ok_or(None)?.map_err(fault)?,
+        let file = match (png, *format) {
+            (Some(file), Format::PNG) => file,
+            (_, format) => encode(film, format, recipe, leash).ok_or(None)?.map_err(fault)?,
         };
         let written = target(path, &s.evaluated)?.write(|out| {
             self.unwhole.set(Some(out.get_ref().path()));

@@ -9,7 +9,7 @@ use crate::app::preview::board::{Message, Report};
 use crate::app::preview::{Board, Level, Picture, Posted, Shown};
 use crate::app::words;
 use crate::diag::{self, Diagnostic, Look, Severity, Sources};
-use crate::film::{self, Depth, Film, Format, Recipe};
+use crate::film::{self, Film, Format, Recipe};
 use crate::lang::Evaluated;
 use crate::render::{Options, Plan, Silent, World, render};
 use crate::scene::AntiAliasing;
@@ -32,7 +32,7 @@ pub enum Coarse {
 }
 
 /// The form of pictures on pages.
-const PNG: Format = Format::Png(Depth::Eight);
+const PNG: Format = Format::PNG;
 
 /// Pixels of a coarse picture's side stand for so many of the full one's: it costs a sixteenth.
 const COARSE: u32 = 4;

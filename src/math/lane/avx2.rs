@@ -1,6 +1,7 @@
 //! Registers of 256 bits: four `f64`, eight `f32`.
 
 use super::common;
+use crate::math::real::Task;
 use crate::math::{Dd, Lane, Mask, Real};
 use std::arch::x86_64::*;
 
@@ -137,6 +138,10 @@ macro_rules! register {
             }
             common!(@each $mask, $width);
             #[inline(always)]
+            fn alone<T: Task>(task: T) -> T::Output {
+                unsafe { super::alone(task) }
+            }
+            #[inline(always)]
             fn vectorize<T>(f: impl FnOnce() -> T) -> T {
                 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
                 #[inline(never)]
@@ -149,6 +154,7 @@ macro_rules! register {
 
         impl Lane for $name {
             type Elem = $elem;
+            type Boxes = super::F32x8;
             const WIDTH: usize = $width;
             #[inline(always)]
             fn load(src: &[$elem]) -> Self {

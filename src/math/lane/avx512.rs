@@ -1,6 +1,7 @@
 //! Registers of 512 bits: eight `f64`, sixteen `f32`.
 
 use super::common;
+use crate::math::real::Task;
 use crate::math::{Dd, Lane, Mask, Real};
 use std::arch::x86_64::*;
 
@@ -125,6 +126,10 @@ macro_rules! register {
             }
             common!(@each $mask, $width);
             #[inline(always)]
+            fn alone<T: Task>(task: T) -> T::Output {
+                unsafe { super::alone(task) }
+            }
+            #[inline(always)]
             fn vectorize<T>(f: impl FnOnce() -> T) -> T {
                 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
                 #[inline(never)]
@@ -137,6 +142,7 @@ macro_rules! register {
 
         impl Lane for $name {
             type Elem = $elem;
+            type Boxes = super::F32x8;
             const WIDTH: usize = $width;
             #[inline(always)]
             fn load(src: &[$elem]) -> Self {

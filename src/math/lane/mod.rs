@@ -127,6 +127,33 @@ macro_rules! common {
 #[cfg(target_arch = "x86_64")]
 use common;
 
+/// Does a task of single numbers.
+///
+/// # Safety
+/// The processor must have AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+#[inline(never)]
+fn alone<T: super::real::Task>(task: T) -> T::Output {
+    task.run()
+}
+
+/// Whether the processor has AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn avx2_is_there() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+}
+
+/// Whether the processor has the parts of AVX-512 that the wide registers use.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn avx512_is_there() -> bool {
+    avx2_is_there()
+        && is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
+        && is_x86_feature_detected!("avx512bw")
+}
+
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
@@ -225,20 +252,4 @@ mod tests {
             F32x16::vectorize(as_alone::<F32x16>);
         }
     }
-}
-
-/// Whether the processor has AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-pub(crate) fn avx2_is_there() -> bool {
-    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
-}
-
-/// Whether the processor has the parts of AVX-512 that the wide registers use.
-#[cfg(target_arch = "x86_64")]
-pub(crate) fn avx512_is_there() -> bool {
-    avx2_is_there()
-        && is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512vl")
-        && is_x86_feature_detected!("avx512bw")
 }

@@ -5,7 +5,7 @@
 
 use super::{Point, SIDE, Visit};
 use crate::math::affine::reciprocal_power;
-use crate::math::real::{dot, each3, three};
+use crate::math::real::{Task, dot, each3, three};
 use crate::math::{Mask, Real, Single};
 use crate::render::bounds::larger;
 use crate::render::ray::{LocalRay, Own};
@@ -37,13 +37,27 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
     let leaves = own.map_or(zero, |own| R::select(own.here, R::select(own.outward, one, -one), zero));
     let LocalRay { o, o_lo: lo, d, d_lo: e } = *ray;
     let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], e[0], e[1], e[2], leaves];
-    // In a function of its own: it is by far the largest kernel.
-    let found = R::vectorize(
+    let found = R::each(
+        given,
         #[inline(always)]
-        || R::each(given, |v| ring_crossings(ring, v)),
+        |given| R::alone(RingCrossings { ring, given }),
     );
     for k in 0..4 {
         visit.crossing(found[k], R::splat(SIDE), !found[4 + k].same(zero));
+    }
+}
+
+/// [`ring_crossings`] to be found: by far the largest kernel.
+struct RingCrossings<'r, S> {
+    ring: &'r Ring,
+    given: [S; 13],
+}
+
+impl<S: Single> Task for RingCrossings<'_, S> {
+    type Output = [S; 8];
+    #[inline(always)]
+    fn run(self) -> [S; 8] {
+        ring_crossings(self.ring, self.given)
     }
 }
 

@@ -1,0 +1,51 @@
+//! Threads that share a piece of work: as many as are useful, this one among them.
+
+use std::num::NonZero;
+use std::thread::{Builder, available_parallelism, scope};
+
+/// Stack of a worker: patterns nest up to the language's limit, at a few hundred bytes a level.
+const STACK: usize = 16 << 20;
+
+/// Threads for `pieces` pieces of work where `asked` are wanted, or one a core.
+pub fn useful(asked: Option<usize>, pieces: usize) -> usize {
+    match pieces {
+        0 | 1 => 1, // without asking the system, which takes its time
+        _ => asked.unwrap_or_else(|| available_parallelism().map_or(1, NonZero::get)).clamp(1, pieces),
+    }
+}
+
+/// Does `work` once on each of `threads` threads, at the same time, and gives back what each gave. Where the system has no
+/// more threads, it is done by fewer.
+pub fn crew<R: Send>(threads: usize, work: impl Fn() -> R + Sync) -> Vec<R> {
+    scope(|s| {
+        let start = |_| Builder::new().stack_size(STACK).spawn_scoped(s, &work).ok();
+        let others: Vec<_> = (1..threads).map_while(start).collect();
+        let own = stacker::maybe_grow(STACK, STACK, &work);
+        let join =
+            |t: std::thread::ScopedJoinHandle<'_, R>| t.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        std::iter::once(own).chain(others.into_iter().map(join)).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Barrier;
+
+    #[test]
+    fn all_work_at_the_same_time() {
+        let all_there = Barrier::new(3);
+        let own = std::thread::current().id();
+        let ids = crew(3, || {
+            all_there.wait();
+            std::thread::current().id()
+        });
+        assert!(ids.len() == 3 && ids[0] == own && ids[1] != ids[2]);
+        assert_eq!(crew(1, || 7), [7]);
+    }
+
+    #[test]
+    fn no_more_threads_than_pieces() {
+        assert_eq!((useful(Some(8), 3), useful(Some(2), 3), useful(None, 1), useful(Some(0), 9)), (3, 2, 1, 1));
+    }
+}
