@@ -3,8 +3,8 @@ table. Counts, not times, so it may run on a busy machine.
 
     cargo build --release && python3 benches/features.py [--rtdsl PROGRAM] [--only mirror,glass]
 
-Needs valgrind, whose callgrind counts. What is read, evaluated, built and written is the same whether a pixel takes 1 ray or 9,
-so the difference of two such runs is the tracing of 8 rays a pixel and nothing else; what is found once for a tile is left out
+Needs valgrind, whose callgrind counts. What is read, evaluated, built and written is the same whether a pixel takes 1 ray or 16,
+so the difference of two such runs is the tracing of 15 rays a pixel and nothing else; what is found once for a tile is left out
 with the rest. Valgrind has no AVX-512: where the processor has AVX2, its 4 rays at a time are what is counted, so one instruction
 may serve 4 rays.
 
@@ -24,7 +24,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURE = ROOT / 'examples/assets/earth.png'
-WIDTH, HEIGHT, SIDE = 160, 90, 3
+WIDTH, HEIGHT, SIDE = 160, 90, 4
 BOUND = 0.001
 
 HEAD = '''rtdsl 1
