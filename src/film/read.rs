@@ -158,7 +158,7 @@ mod tests {
                 encoder.set_palette((0..=255).flat_map(|i| [i, 255 - i, i / 2]).collect::<Vec<u8>>());
                 encoder.set_trns(vec![0, 128]);
             }
-            let data: Vec<u8> = (0..4 * depth as u8).map(|i| i * 37).collect();
+            let data: Vec<u8> = (0..4 * depth as u8).map(|i| i.wrapping_mul(37)).collect();
             encoder.write_header().unwrap().write_image_data(&data).unwrap();
             assert_eq!(read(&file, any), Ok(theirs(&file)), "{color:?} {depth:?}");
         }

@@ -205,7 +205,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
         return Err(Failure { diagnostics: in_order(errors, limits.errors), sources, files, main_unreadable: false });
     }
     let mut warnings = Vec::new();
-    let is_empty = scene.instance_count() == 0;
+    let is_empty = scene.is_empty();
     let is_library = is_empty && exports;
     if is_empty {
         let d = Diagnostic::warning("there is nothing to show").at(Span::new(main, 0..0), "");
@@ -214,6 +214,7 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
             false => d.note("the scene has no shapes: add one, such as `sphere()`"),
         });
     }
+    scene.prune();
     let evaluate_seconds = start.elapsed().as_secs_f64();
     Ok(Evaluated { scene, sources, params, warnings, is_library, files, parse_seconds, evaluate_seconds })
 }

@@ -105,6 +105,7 @@ macro_rules! scalar {
         impl Lane for $t {
             type Elem = $t;
             type Boxes = f32;
+            type One = $t;
             const WIDTH: usize = 1;
             #[inline(always)]
             fn load(src: &[$t]) -> Self {

@@ -193,6 +193,8 @@ pub trait Lane: Real<Single = f64> {
     type Elem: Elem;
     /// A register of up to eight `f32` of the same instructions: eight boxes of a tree are tested in it.
     type Boxes: Lane<Elem = f32>;
+    /// One such number alone, on the same instructions.
+    type One: Lane<Elem = Self::Elem>;
     /// How many values one `Lane` holds.
     const WIDTH: usize;
 

@@ -1,14 +1,17 @@
 //! How much of a light arrives: shadow rays, and what transparent objects let through.
 
+use super::batch::PADDING;
+use super::bvh::{Leaves, Spread};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
 use super::ray::Own;
 use super::shape::Visit;
+use super::span::{least, stored};
 use super::surface_pattern::PatternFrame;
 use super::touch::ButAtTheEnd;
 use super::world::World;
-use crate::math::real::{Mask, select3, splat3, three};
-use crate::math::{Lane, Real};
+use crate::math::real::{Mask, each3, select3, splat3, three};
+use crate::math::{Elem, Lane, Real};
 use crate::render::pattern::Rows;
 
 /// Room for what a shadow ray needs beside its candidates.
@@ -150,22 +153,25 @@ impl<L: Lane> Open<'_, L> {
     fn test_all(&mut self, world: &World, ids: &[u32], transparent: &mut Vec<u32>, recorder: &mut Recorder) {
         L::vectorize(
             #[inline(always)]
-            || {
-                for &k in ids {
-                    if !(self.mask & !self.rays.left_for_good(world, k)).any() {
-                        continue;
-                    }
-                    match world.constant_transmission(k) {
-                        Some([0.0, 0.0, 0.0]) => self.test(world, k, recorder),
-                        Some([1.0, 1.0, 1.0]) => {}
-                        _ => transparent.push(k),
-                    }
-                    if !self.mask.any() {
-                        return;
-                    }
-                }
-            },
+            || self.test_here(world, ids, transparent, recorder),
         );
+    }
+
+    #[inline(always)]
+    fn test_here(&mut self, world: &World, ids: &[u32], transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+        for &k in ids {
+            if !(self.mask & !self.rays.left_for_good(world, k)).any() {
+                continue;
+            }
+            match world.constant_transmission(k) {
+                Some([0.0, 0.0, 0.0]) => self.test(world, k, recorder),
+                Some([1.0, 1.0, 1.0]) => {}
+                _ => transparent.push(k),
+            }
+            if !self.mask.any() {
+                return;
+            }
+        }
     }
 
     /// Tests opaque surface `k`.
@@ -185,30 +191,61 @@ impl<L: Lane> Open<'_, L> {
         self.mask = self.mask & !blocked;
     }
 
+    /// Goes through the tree with one ray after another: what they meet there is seldom the same.
     #[inline(always)]
     fn through_tree(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
         L::vectorize(
             #[inline(always)]
             || {
-                let reach = self.reach();
-                world.bvh.traverse(
-                    self.rays.o,
-                    self.rays.l,
-                    reach,
-                    #[inline(always)]
-                    |k| {
-                        self.test_all(world, &[k], transparent, recorder);
-                        self.reach()
-                    },
-                );
+                let (o, l) = (each3!(self.rays.o, x => stored(x)), each3!(self.rays.l, x => stored(x)));
+                let (source, part, outward) =
+                    (stored(self.rays.source), stored(self.rays.part), stored(self.rays.outward));
+                let distance = stored(self.rays.distance);
+                let mut bits = self.mask.bits();
+                let mut rest = bits;
+                while rest != 0 {
+                    let i = rest.trailing_zeros() as usize % PADDING;
+                    rest &= rest - 1;
+                    let one = |lanes: &[L::Elem; PADDING]| L::One::splat(lanes[i].to_f64());
+                    let rays = ShadowRays::<L::One> {
+                        source: one(&source),
+                        part: one(&part),
+                        outward: one(&outward),
+                        o: each3!(&o, x => one(x)),
+                        l: each3!(&l, x => one(x)),
+                        distance: one(&distance),
+                        touched: self.rays.touched,
+                    };
+                    let open = Open { mask: Mask::splat(true), rays: &rays };
+                    let mut ray = InTree { world, open, transparent, recorder };
+                    let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&l, x => x[i].to_f64()));
+                    world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, distance[i].to_f64(), &mut ray);
+                    if !ray.open.mask.any() {
+                        bits &= !(1 << i);
+                    }
+                }
+                self.mask = L::Mask::from_bits(bits);
             },
         );
+        // Each of the rays may have put the same aside.
+        transparent.sort_unstable();
+        transparent.dedup();
     }
+}
 
-    /// How far each ray still has to be followed.
+/// A shadow ray on its way through the tree.
+struct InTree<'a, R: Lane> {
+    world: &'a World,
+    open: Open<'a, R>,
+    transparent: &'a mut Vec<u32>,
+    recorder: &'a mut Recorder,
+}
+
+impl<R: Lane> Leaves for InTree<'_, R> {
     #[inline(always)]
-    fn reach(&self) -> L {
-        L::select(self.mask, self.rays.distance, -L::one())
+    fn test(&mut self, ids: &[u32]) -> f64 {
+        self.open.test_here(self.world, ids, self.transparent, self.recorder);
+        if self.open.mask.any() { least(self.open.rays.distance) } else { -1.0 }
     }
 }
 

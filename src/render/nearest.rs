@@ -1,11 +1,14 @@
 //! What each ray of a batch meets first.
 
-use super::batch::{HitColumns, NONE, RayBatch, load3};
+use super::batch::{HitColumns, NONE, PADDING, RayBatch, load3};
+use super::bvh::{Leaves, Spread};
 use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::Visit;
+use super::span::{least, stored};
 use super::world::World;
-use crate::math::{Lane, Mask, Real};
+use crate::math::real::each3;
+use crate::math::{Elem, Lane, Mask, Real};
 
 /// Finds the nearest crossing in front of each ray's origin. `AT_EYE` says that all origins are exactly 0.
 #[inline(always)]
@@ -94,38 +97,72 @@ impl<L: Lane> Nearest<L> {
     fn test_all(&mut self, world: &World, ids: &[u32], start: &Start<L>) {
         L::vectorize(
             #[inline(always)]
-            || {
-                let outward = L::one().same(start.outward);
-                for &k in ids {
-                    let here = start.primitive.same(L::splat(k as f64));
-                    let left = here & outward & L::Mask::splat(world.primitive(k).kind.is_left_for_good());
-                    if !(start.live & !left).any() {
-                        continue;
-                    }
-                    let own = Own::of(here, start.part, outward);
-                    self.test::<false>(world, k, (start.o, start.d), own);
-                }
-            },
+            || self.test_here(world, ids, start),
         );
     }
 
+    #[inline(always)]
+    fn test_here(&mut self, world: &World, ids: &[u32], start: &Start<L>) {
+        let outward = L::one().same(start.outward);
+        for &k in ids {
+            let here = start.primitive.same(L::splat(k as f64));
+            let left = here & outward & L::Mask::splat(world.primitive(k).kind.is_left_for_good());
+            if !(start.live & !left).any() {
+                continue;
+            }
+            let own = Own::of(here, start.part, outward);
+            self.test::<false>(world, k, (start.o, start.d), own);
+        }
+    }
+
+    /// Goes through the tree with one ray after another: what they meet there is seldom the same.
     #[inline(always)]
     fn through_tree(&mut self, world: &World, start: &Start<L>) {
         L::vectorize(
             #[inline(always)]
             || {
-                world.bvh.traverse(
-                    start.o,
-                    start.d,
-                    L::select(start.live, self.t, -L::one()),
-                    #[inline(always)]
-                    |k| {
-                        self.test_all(world, &[k], start);
-                        self.t
-                    },
-                );
+                let (o, d) = (each3!(start.o, x => stored(x)), each3!(start.d, x => stored(x)));
+                let from = [stored(start.primitive), stored(start.part), stored(start.outward)];
+                let (mut t, mut id, mut part) = (stored(self.t), stored(self.id), stored(self.part));
+                let mut rest = start.live.bits();
+                while rest != 0 {
+                    let i = rest.trailing_zeros() as usize % PADDING;
+                    rest &= rest - 1;
+                    let one = |lanes: &[L::Elem; PADDING]| L::One::splat(lanes[i].to_f64());
+                    let start = Start::<L::One> {
+                        o: each3!(&o, x => one(x)),
+                        d: each3!(&d, x => one(x)),
+                        primitive: one(&from[0]),
+                        part: one(&from[1]),
+                        outward: one(&from[2]),
+                        live: Mask::splat(true),
+                    };
+                    let best = Nearest { t: one(&t), id: one(&id), part: one(&part), current: L::One::zero() };
+                    let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&d, x => x[i].to_f64()));
+                    let mut ray = InTree { world, start, best };
+                    world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t[i].to_f64(), &mut ray);
+                    ray.best.t.store(&mut t[i..]);
+                    ray.best.id.store(&mut id[i..]);
+                    ray.best.part.store(&mut part[i..]);
+                }
+                (self.t, self.id, self.part) = (L::load(&t), L::load(&id), L::load(&part));
             },
         );
+    }
+}
+
+/// A ray on its way through the tree.
+struct InTree<'w, R: Real> {
+    world: &'w World,
+    start: Start<R>,
+    best: Nearest<R>,
+}
+
+impl<R: Lane> Leaves for InTree<'_, R> {
+    #[inline(always)]
+    fn test(&mut self, ids: &[u32]) -> f64 {
+        self.best.test_here(self.world, ids, &self.start);
+        least(self.best.t)
     }
 }
 

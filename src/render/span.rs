@@ -32,11 +32,18 @@ impl<L: Lane> Span<L> {
     }
 }
 
+/// A register's numbers one by one.
+#[inline(always)]
+pub fn stored<L: Lane>(x: L) -> [L::Elem; PADDING] {
+    let mut lanes = [L::Elem::default(); PADDING];
+    x.store(&mut lanes);
+    lanes
+}
+
 /// The smallest of a register's numbers.
 #[inline(always)]
 pub fn least<L: Lane>(x: L) -> f64 {
-    let mut lanes = [L::Elem::default(); PADDING];
-    x.store(&mut lanes);
+    let lanes = stored(x);
     let mut least = f64::INFINITY;
     for x in &lanes[..L::WIDTH] {
         least = smaller(x.to_f64(), least);
@@ -47,8 +54,7 @@ pub fn least<L: Lane>(x: L) -> f64 {
 /// The sum of a register's numbers.
 #[inline(always)]
 pub fn total<L: Lane>(x: L) -> f64 {
-    let mut lanes = [L::Elem::default(); PADDING];
-    x.store(&mut lanes);
+    let lanes = stored(x);
     let mut total = 0.0;
     for x in &lanes[..L::WIDTH] {
         total += x.to_f64();

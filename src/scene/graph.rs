@@ -116,6 +116,13 @@ impl Scene {
         self.roots.iter().fold(0u64, |n, r| n.saturating_add(counts[r.0 as usize]))
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        // Most scenes begin with one; then nothing must be counted.
+        let is_one = |id: &NodeId| matches!(self.node(*id).kind, NodeKind::Shape(_) | NodeKind::Light(_));
+        !self.roots.iter().any(is_one) && self.instance_count() == 0
+    }
+
     /// How many [`Instance`]s each node makes; saturating.
     fn instance_counts(&self) -> Vec<u64> {
         let mut counts = vec![0u64; self.nodes.len()];

@@ -9,6 +9,7 @@ pub mod image;
 pub mod light;
 pub mod material;
 pub mod pattern;
+mod prune;
 pub mod range;
 pub mod settings;
 pub mod shape;

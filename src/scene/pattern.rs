@@ -199,4 +199,23 @@ impl PatternKind {
             Add(a, b) | Multiply(a, b) => vec![*a, *b],
         }
     }
+
+    /// The same, to be changed.
+    pub fn children_mut(&mut self) -> Vec<&mut PatternId> {
+        use PatternKind::*;
+        match self {
+            Constant(_) | Image { .. } => vec![],
+            Checker { a, b, .. }
+            | Stripes { a, b, .. }
+            | Rings { a, b, .. }
+            | Gradient { a, b, .. }
+            | Noise { a, b, .. }
+            | Cells { a, b, .. } => vec![a, b],
+            Brick { mortar, brick, .. } => vec![mortar, brick],
+            Mix { a, b, by } => vec![a, b, by],
+            Blend { stops, by } => stops.iter_mut().chain([by]).collect(),
+            Transformed { child, .. } | Turbulence { child, .. } => vec![child],
+            Add(a, b) | Multiply(a, b) => vec![a, b],
+        }
+    }
 }

@@ -6,6 +6,7 @@ mod memory;
 mod mistake;
 mod module;
 mod mutation;
+mod unused;
 
 use super::limits::Limits;
 use super::*;

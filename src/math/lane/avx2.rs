@@ -6,7 +6,7 @@ use crate::math::{Dd, Lane, Mask, Real};
 use std::arch::x86_64::*;
 
 macro_rules! register {
-    ($name:ident, $mask:ident, $elem:ident, $int:ident, $width:literal, $register:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
+    ($name:ident, $one:ident, $mask:ident, $elem:ident, $int:ident, $width:literal, $register:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
      $set:ident, $zero:ident, $load:ident, $store:ident, $fma:ident, $fms:ident, $sqrt:ident, $floor:ident, $xor:ident, $and:ident,
      $and_not:ident, $or:ident, $compare:ident, $blend:ident, $bits:ident, $min:ident, $max:ident, $set_int:ident, $load_int:ident,
      $same_int:ident, $from_int:ident) => {
@@ -155,6 +155,7 @@ macro_rules! register {
         impl Lane for $name {
             type Elem = $elem;
             type Boxes = super::F32x8;
+            type One = super::$one;
             const WIDTH: usize = $width;
             #[inline(always)]
             fn load(src: &[$elem]) -> Self {
@@ -180,6 +181,7 @@ macro_rules! register {
 
 register!(
     F64x4,
+    F64x1,
     Mask4,
     f64,
     i64,
@@ -213,6 +215,7 @@ register!(
 );
 register!(
     F32x8,
+    F32x1,
     Mask8,
     f32,
     i32,

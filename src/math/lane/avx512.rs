@@ -6,7 +6,7 @@ use crate::math::{Dd, Lane, Mask, Real};
 use std::arch::x86_64::*;
 
 macro_rules! register {
-    ($name:ident, $mask:ident, $elem:ident, $bits:ident, $width:literal, $register:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
+    ($name:ident, $one:ident, $mask:ident, $elem:ident, $bits:ident, $width:literal, $register:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
      $set:ident, $load:ident, $store:ident, $fma:ident, $fms:ident, $sqrt:ident, $round:ident, $xor:ident, $and:ident,
      $and_not:ident, $or:ident, $compare:ident, $blend:ident, $compress:ident, $min:ident, $max:ident) => {
         /// Several numbers.
@@ -143,6 +143,7 @@ macro_rules! register {
         impl Lane for $name {
             type Elem = $elem;
             type Boxes = super::F32x8;
+            type One = super::$one;
             const WIDTH: usize = $width;
             #[inline(always)]
             fn load(src: &[$elem]) -> Self {
@@ -163,6 +164,7 @@ macro_rules! register {
 
 register!(
     F64x8,
+    F64x1,
     Mask8,
     f64,
     u8,
@@ -191,6 +193,7 @@ register!(
 );
 register!(
     F32x16,
+    F32x1,
     Mask16,
     f32,
     u16,

@@ -12,11 +12,15 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod one;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::{F32x8, F64x4};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::{F32x16, F64x8};
+#[cfg(target_arch = "x86_64")]
+use one::{F32x1, F64x1};
 
 /// What registers of all sizes have in common: operators, and what is done number by number.
 #[cfg(target_arch = "x86_64")]
