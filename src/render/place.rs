@@ -381,7 +381,7 @@ mod tests {
         let p = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         for points in [p, [p[1], p[0], p[2], p[3]]] {
             for part in 0..4 {
-                let face = place(&Shape::Tetrahedron { points }, &Affine::IDENTITY, part);
+                let face = place(&Shape::Tetrahedron { points: Box::new(points) }, &Affine::IDENTITY, part);
                 let Form::Triangle(v, n, _) = face.form else { panic!() };
                 let from_middle = DVec3::from_array(v[0]) - DVec3::splat(0.2);
                 assert!(from_middle.dot(DVec3::from_array(n)) > 0.0);
