@@ -260,15 +260,15 @@ macro_rules! three {
     ($i:ident => $value:expr) => {
         [
             {
-                let $i = 0usize;
+                let $i: usize = 0;
                 $value
             },
             {
-                let $i = 1usize;
+                let $i: usize = 1;
                 $value
             },
             {
-                let $i = 2usize;
+                let $i: usize = 2;
                 $value
             },
         ]

@@ -265,6 +265,10 @@ impl World {
             + self.triangles.len() * size_of::<TriangleData>()
             + self.meshes.iter().map(|m| m.memory_bytes()).sum::<usize>()
             + self.spaces.len() * size_of::<MadeSpace>()
+            + self.flocks.len() * size_of::<u32>()
+            + self.unbounded.len() * size_of::<Unbounded>()
+            + self.lights.iter().map(|l| size_of::<PointLight>() + size_of_val(&*l.touched)).sum::<usize>()
+            + self.materials.len() * size_of::<Surfacing>()
             + self.bvh.memory_bytes()
             + self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>()
     }
