@@ -36,7 +36,7 @@ fn unused() -> Vec<(&'static str, String)> {
         one("glass", "glass()"),
         one("patterns", "mix(noise(red, blue), stripes(cells(), rings(red, blue)), 0.5)"),
         one("a torus", "torus(at: [0, 1, 0]) |> scale([1, 2, 3])"),
-        one("a box with a look of its own", "box(size: 1, mat: glass())"),
+        one("a box with a look of its own", "box(size: [1, 1, 1], mat: glass())"),
         one("10,000 balls", "[for i in 0..10000 { sphere(at: [i, 0, 0]) }]"),
         one("10,000 materials", "[for i in 0..10000 { phong(color: gray(i / 10000), reflect: 0.5) }]"),
         ("a function", "fn unused(x) = sphere(at: [x, 0, 0], r: 1, mat: glass())\n".into()),
