@@ -66,9 +66,9 @@ pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &m
     for g in (0..rays.len).step_by(L::WIDTH) {
         let live = L::Mask::first((rays.len - g).min(L::WIDTH));
         origins.hold(live, load3::<L>(&rays.o, g));
+        // Not brought to one length: any axis does, for what counts is measured from it.
         let d = load3::<L>(&rays.d, g);
-        let inverse = L::one() / dot(d, d).sqrt();
-        sum = three!(c => sum[c] + L::select(live, d[c] * inverse, L::zero()));
+        sum = three!(c => sum[c] + L::select(live, d[c], L::zero()));
     }
     let sum = each3!(sum, x => total(x));
     let len = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();

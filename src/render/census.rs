@@ -140,7 +140,8 @@ impl Change {
         }
         let mut is_new = vec![false; world.primitives.len()];
         added.iter().for_each(|&id| is_new[id as usize] = true);
-        let bounded: Vec<(u32, Bounds)> = world.bvh.leaves().filter(|l| is_new[world.owners.of(l.0) as usize]).collect();
+        let bounded: Vec<(u32, Bounds)> =
+            world.bvh.leaves().filter(|l| is_new[world.owners.of(l.0) as usize]).collect();
         self.added_planes = world.unbounded.iter().map(|p| p.id).filter(|&id| is_new[id as usize]).collect();
         self.added = Bvh::build(bounded);
     }

@@ -9,6 +9,7 @@ use super::shape::{Mesh, Visit};
 use super::span::{least, stored};
 use super::surface_pattern::PatternFrame;
 use super::touch::ButAtTheEnd;
+use super::way::Way;
 use super::world::World;
 use crate::math::real::{Mask, each3, select3, splat3, three};
 use crate::math::{Elem, Lane, Real};
@@ -19,6 +20,10 @@ use crate::render::pattern::Rows;
 pub struct Shadow {
     transparent: Vec<u32>,
     spaces: Vec<Rows>,
+    /// Of camera rays' hits, and of others.
+    ways: [Way; 2],
+    /// Whether these are others.
+    pub deep: bool,
 }
 
 /// Rays from points of surfaces to one light.
@@ -88,10 +93,10 @@ pub fn occlusion<L: Lane>(
     // Opaque ones first: they need no order.
     scratch.transparent.clear();
     if !occluders.ids.is_empty() {
-        open.test_all(world, &occluders.ids, &mut scratch.transparent, recorder);
+        open.test_here(world, &occluders.ids, &mut scratch.transparent, recorder);
     }
     if occluders.tree && open.mask.any() {
-        open.through_tree(world, &mut scratch.transparent, recorder);
+        open.through_tree(world, scratch, recorder);
     }
     let seen = select3(open.mask, [L::one(); 3], zero);
     if scratch.transparent.is_empty() || !open.mask.any() {
@@ -148,15 +153,7 @@ struct Open<'r, L: Lane> {
 }
 
 impl<L: Lane> Open<'_, L> {
-    /// Tests surfaces until nothing is open, and puts transparent ones aside; in a function of its own, for kernels are large.
-    #[inline(always)]
-    fn test_all(&mut self, world: &World, ids: &[u32], transparent: &mut Vec<u32>, recorder: &mut Recorder) {
-        L::vectorize(
-            #[inline(always)]
-            || self.test_here(world, ids, transparent, recorder),
-        );
-    }
-
+    /// Tests surfaces until nothing is open, and puts transparent ones aside.
     #[inline(always)]
     fn test_here(&mut self, world: &World, ids: &[u32], transparent: &mut Vec<u32>, recorder: &mut Recorder) {
         for &k in ids {
@@ -191,9 +188,60 @@ impl<L: Lane> Open<'_, L> {
         self.mask = self.mask & !blocked;
     }
 
-    /// Goes through the tree with one ray after another: what they meet there is seldom the same.
+    /// Goes through the tree the better way.
     #[inline(always)]
-    fn through_tree(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+    fn through_tree(&mut self, world: &World, scratch: &mut Shadow, recorder: &mut Recorder) {
+        let Shadow { transparent, ways, deep, .. } = scratch;
+        let way = &mut ways[*deep as usize];
+        if L::WIDTH > 1 && way.is_due() {
+            let before = self.mask;
+            way.try_both(|together| {
+                self.mask = before;
+                match together {
+                    true => self.together(world, transparent, recorder),
+                    false => self.one_by_one(world, transparent, recorder),
+                }
+            });
+        } else if L::WIDTH > 1 && way.is_together() {
+            self.together(world, transparent, recorder);
+        } else {
+            self.one_by_one(world, transparent, recorder);
+        }
+        // Each of the rays may have put the same aside.
+        transparent.sort_unstable();
+        transparent.dedup();
+    }
+
+    /// All rays at once.
+    #[inline(always)]
+    fn together(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+        L::vectorize(
+            #[inline(always)]
+            || {
+                let (rays, reach) = (self.rays, self.reach());
+                world.bvh.traverse(
+                    rays.o,
+                    rays.l,
+                    reach,
+                    #[inline(always)]
+                    |k| {
+                        self.test_here(world, &[k], transparent, recorder);
+                        self.reach()
+                    },
+                );
+            },
+        );
+    }
+
+    /// How far each ray still has to be followed.
+    #[inline(always)]
+    fn reach(&self) -> L {
+        L::select(self.mask, self.rays.distance, -L::one())
+    }
+
+    /// One ray after another.
+    #[inline(always)]
+    fn one_by_one(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
         L::vectorize(
             #[inline(always)]
             || {
@@ -236,9 +284,6 @@ impl<L: Lane> Open<'_, L> {
                 self.mask = L::Mask::from_bits(bits);
             },
         );
-        // Each of the rays may have put the same aside.
-        transparent.sort_unstable();
-        transparent.dedup();
     }
 }
 

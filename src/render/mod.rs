@@ -45,6 +45,7 @@ mod texture;
 mod tile;
 mod touch;
 mod tracer;
+mod way;
 pub mod world;
 
 pub use dispatch::{Develop, instructions, render, stream};

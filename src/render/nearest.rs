@@ -6,6 +6,7 @@ use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::{Mesh, Visit};
 use super::span::{least, stored};
+use super::way::Way;
 use super::world::World;
 use crate::math::real::each3;
 use crate::math::{Elem, Lane, Mask, Real};
@@ -17,6 +18,7 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
     candidates: &Candidates,
     rays: &RayBatch<L::Elem>,
     hits: &mut HitColumns<L::Elem>,
+    way: &mut Way,
 ) {
     for g in (0..rays.len).step_by(L::WIDTH) {
         let d = load3::<L>(&rays.d, g);
@@ -26,7 +28,7 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
                 best.test::<true>(world, k, ([L::zero(); 3], d), None);
             }
             if candidates.tree {
-                best.through_tree(world, &Start::at_eye(d));
+                best.through_tree(world, &Start::at_eye(d), way);
             }
         } else {
             let start = Start {
@@ -41,7 +43,7 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
                 best.test_all(world, &candidates.ids, &start);
             }
             if candidates.tree {
-                best.through_tree(world, &start);
+                best.through_tree(world, &start, way);
             }
         }
         best.t.store(&mut hits.t[g..]);
@@ -77,6 +79,7 @@ impl<R: Real> Start<R> {
 }
 
 /// Keeps the nearest crossing; of two at the same t, that of the primitive with the lower number.
+#[derive(Clone, Copy)]
 struct Nearest<R> {
     t: R,
     id: R,
@@ -115,9 +118,46 @@ impl<L: Lane> Nearest<L> {
         }
     }
 
-    /// Goes through the tree with one ray after another: what they meet there is seldom the same.
+    /// Goes through the tree the better way.
     #[inline(always)]
-    fn through_tree(&mut self, world: &World, start: &Start<L>) {
+    fn through_tree(&mut self, world: &World, start: &Start<L>, way: &mut Way) {
+        if L::WIDTH > 1 && way.is_due() {
+            let before = *self;
+            way.try_both(|together| {
+                *self = before;
+                if together { self.together(world, start) } else { self.one_by_one(world, start) }
+            });
+        } else if L::WIDTH > 1 && way.is_together() {
+            self.together(world, start);
+        } else {
+            self.one_by_one(world, start);
+        }
+    }
+
+    /// All rays at once.
+    #[inline(always)]
+    fn together(&mut self, world: &World, start: &Start<L>) {
+        L::vectorize(
+            #[inline(always)]
+            || {
+                let t_max = L::select(start.live, self.t, -L::one());
+                world.bvh.traverse(
+                    start.o,
+                    start.d,
+                    t_max,
+                    #[inline(always)]
+                    |k| {
+                        self.test_all(world, &[k], start);
+                        L::select(start.live, self.t, -L::one())
+                    },
+                );
+            },
+        );
+    }
+
+    /// One ray after another.
+    #[inline(always)]
+    fn one_by_one(&mut self, world: &World, start: &Start<L>) {
         L::vectorize(
             #[inline(always)]
             || {

@@ -9,6 +9,7 @@ use super::nearest::nearest;
 use super::options::{Options, Probe};
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::PatternFrame;
+use super::way::Way;
 use super::world::{PointLight, World};
 use crate::math::real::{Bool, dot, minus, scaled};
 
@@ -23,7 +24,7 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
     let mut everything = Candidates::default();
     everything.gather(world, |_| true, |_, _| true);
     let mut hits = HitColumns::<f64>::default();
-    nearest::<f64, false>(world, &everything, &rays, &mut hits);
+    nearest::<f64, false>(world, &everything, &rays, &mut hits, &mut Way::default());
     if hits.id[0] == NONE {
         return None;
     }

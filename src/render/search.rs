@@ -6,6 +6,7 @@ use super::candidates::Candidates;
 use super::frame::Axes;
 use super::nearest::nearest;
 use super::shape::Kind;
+use super::way::Way;
 use super::world::World;
 use crate::math::hash::KeyedHash;
 use crate::math::real::three;
@@ -43,8 +44,8 @@ impl Search {
                 }
                 batch.source[i] = NONE;
             }
-            nearest::<f64, false>(world, &by_tree, &batch, &mut found[0]);
-            nearest::<f64, false>(world, &by_list, &batch, &mut found[1]);
+            nearest::<f64, false>(world, &by_tree, &batch, &mut found[0], &mut Way::default());
+            nearest::<f64, false>(world, &by_list, &batch, &mut found[1], &mut Way::default());
             let what =
                 |hits: &HitColumns<f64>, i: usize| (hits.t[i].to_bits(), hits.id[i].to_bits(), hits.part[i].to_bits());
             for i in 0..batch.len {

@@ -73,6 +73,7 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
     children: Children<'_, L::Elem>,
     shadow_rays: &mut u64,
 ) {
+    s.shadow.deep = !gathered.first;
     let primitive = world.primitive(hits.flock);
     let surfacing = world.surfacing(hits.flock);
     let frame = PatternFrame::new(world, primitive, surfacing, &mut s.spaces);
@@ -117,41 +118,78 @@ impl<E: Elem> RunOfHits<'_, E> {
             let at = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
             let ids = L::load(&hits.id[g..]);
             let live = L::Mask::from_bits(group.bits);
-            let surface = match self.mesh {
-                Some(mesh) => surface_of_mesh(mesh, L::select(live, ids, L::splat(mesh.first as f64)), (o, d)),
-                None => {
-                    // Mostly one surface: others one after another.
-                    let id = hits.id[g + group.bits.trailing_zeros() as usize];
-                    let mut surface = self.world.surface::<L, AT_EYE>(id.to_f64() as u32, (o, d), at);
-                    let mut rest = group.bits & !ids.same(L::splat(id.to_f64())).bits();
-                    while rest != 0 {
-                        let id = hits.id[g + rest.trailing_zeros() as usize].to_f64();
-                        let here = ids.same(L::splat(id));
-                        surface = surface_of_another::<L>(self.world, id as u32, (o, d), at, here, surface);
-                        rest &= !here.bits();
-                    }
-                    surface
-                }
-            };
-            let inside = L::zero().lt(dot(surface.n, d));
-            let faced = FacedBy { inside };
-            store3(&mut s.p, g, surface.p);
-            store3(&mut s.n, g, faced.face(surface.n));
-            if self.bent {
-                let mut ns = surface.ns;
-                if self.frame.has_bump() {
-                    ns = bumped(&self.frame, &s.spaces, surface.local, surface.n, ns);
-                }
-                store3(&mut s.ns, g, faced.face(ns));
+            if let Some(mesh) = self.mesh {
+                let ids = L::select(live, ids, L::splat(mesh.first as f64));
+                let surface = surface_of_mesh(mesh, ids, (o, d));
+                points.hold(live, surface.p);
+                self.keep(g, d, &surface, s);
+                continue;
             }
-            if self.surfacing.patterned {
-                store3(&mut s.local, g, surface.local);
-            }
-            surface.offset.store(&mut s.offset[g..]);
-            L::select(inside, L::one(), L::zero()).store(&mut s.inside[g..]);
+            let id = hits.id[g + group.bits.trailing_zeros() as usize];
+            let surface = self.world.surface::<L, AT_EYE>(id.to_f64() as u32, (o, d), at);
             points.hold(live, surface.p);
+            self.keep(g, d, &surface, s);
+            // Mostly that is all; the surfaces of others are put over it, one after another.
+            let mut rest = group.bits & !ids.same(L::splat(id.to_f64())).bits();
+            while rest != 0 {
+                let id = hits.id[g + rest.trailing_zeros() as usize].to_f64();
+                let here = ids.same(L::splat(id));
+                self.keep_another(g, (id as u32, (o, d), at), here, s);
+                points.hold(live & here, load3(&s.p, g));
+                rest &= !here.bits();
+            }
         }
         points.bounds()
+    }
+
+    /// Keeps the surfaces that rays along `d` met at the places from `g` on.
+    #[inline(always)]
+    fn keep<L: Lane<Elem = E>>(&self, g: usize, d: [L; 3], surface: &Surface<L>, s: &mut ShadeScratch<E>) {
+        let inside = L::zero().lt(dot(surface.n, d));
+        let faced = FacedBy { inside };
+        store3(&mut s.p, g, surface.p);
+        store3(&mut s.n, g, faced.face(surface.n));
+        if self.bent {
+            let mut ns = surface.ns;
+            if self.frame.has_bump() {
+                ns = bumped(&self.frame, &s.spaces, surface.local, surface.n, ns);
+            }
+            store3(&mut s.ns, g, faced.face(ns));
+        }
+        if self.surfacing.patterned {
+            store3(&mut s.local, g, surface.local);
+        }
+        surface.offset.store(&mut s.offset[g..]);
+        L::select(inside, L::one(), L::zero()).store(&mut s.inside[g..]);
+    }
+
+    /// Keeps surface `id` in the lanes of `here`; in a function of its own, for kernels are large. Such runs have no pattern, and
+    /// so no bump.
+    #[inline(always)]
+    fn keep_another<L: Lane<Elem = E>>(
+        &self,
+        g: usize,
+        (id, ray, at): (u32, ([L; 3], [L; 3]), (L, L)),
+        here: L::Mask,
+        s: &mut ShadeScratch<E>,
+    ) {
+        L::vectorize(
+            #[inline(always)]
+            || {
+                let surface = self.world.surface::<L, false>(id, ray, at);
+                let inside = L::zero().lt(dot(surface.n, ray.1));
+                let faced = FacedBy { inside };
+                let put = |old: &Column3<E>, new: [L; 3]| select3(here, new, load3(old, g));
+                let (p, n, ns) =
+                    (put(&s.p, surface.p), put(&s.n, faced.face(surface.n)), put(&s.ns, faced.face(surface.ns)));
+                store3(&mut s.p, g, p);
+                store3(&mut s.n, g, n);
+                store3(&mut s.ns, g, ns);
+                let inside = L::select(inside, L::one(), L::zero());
+                L::select(here, surface.offset, L::load(&s.offset[g..])).store(&mut s.offset[g..]);
+                L::select(here, inside, L::load(&s.inside[g..])).store(&mut s.inside[g..]);
+            },
+        );
     }
 
     /// What may stand between the hits, which lie in `points`, and each light.
@@ -335,31 +373,6 @@ fn surface_of_mesh<L: Lane>(mesh: &Mesh, ids: L, ray: ([L; 3], [L; 3])) -> Surfa
     L::vectorize(
         #[inline(always)]
         || mesh.surfaces(ids - L::splat(mesh.first as f64), ray),
-    )
-}
-
-/// `surface`, but that of `id` where `here`; in a function of its own, for kernels are large.
-#[inline(always)]
-fn surface_of_another<L: Lane>(
-    world: &World,
-    id: u32,
-    ray: ([L; 3], [L; 3]),
-    at: (L, L),
-    here: L::Mask,
-    surface: Surface<L>,
-) -> Surface<L> {
-    L::vectorize(
-        #[inline(always)]
-        || {
-            let other = world.surface::<L, false>(id, ray, at);
-            Surface {
-                p: select3(here, other.p, surface.p),
-                n: select3(here, other.n, surface.n),
-                ns: select3(here, other.ns, surface.ns),
-                offset: L::select(here, other.offset, surface.offset),
-                local: select3(here, other.local, surface.local),
-            }
-        },
     )
 }
 

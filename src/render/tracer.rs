@@ -14,6 +14,7 @@ use super::options::RayCounts;
 use super::run::{LaneGroup, Run, Runs};
 use super::shade::{Hits, ShadeScratch, shade};
 use super::spawn::Children;
+use super::way::Way;
 use super::world::World;
 use crate::math::real::{Mask, three};
 use crate::math::{Elem, Lane};
@@ -32,6 +33,8 @@ pub struct Tracer<'w, L: Lane> {
     /// What the batch at hand may meet.
     narrowed: Candidates,
     scratch: ShadeScratch<L::Elem>,
+    /// Of camera rays and of others.
+    ways: [Way; 2],
     runs: Runs,
     /// The run at hand, once packed.
     packed: Run,
@@ -63,6 +66,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
             candidates: Candidates::default(),
             narrowed: Candidates::default(),
             scratch: ShadeScratch::new(recorder),
+            ways: Default::default(),
             runs: Runs::new(world.primitives.len()),
             packed: Run::default(),
             counts: RayCounts::default(),
@@ -136,7 +140,8 @@ impl<'w, L: Lane> Tracer<'w, L> {
         L::vectorize(
             #[inline(always)]
             || {
-                nearest::<L, AT_EYE>(self.world, candidates, &at.rays, &mut at.hits);
+                let way = &mut self.ways[(level > 0) as usize];
+                nearest::<L, AT_EYE>(self.world, candidates, &at.rays, &mut at.hits, way);
                 self.runs.sort::<L>(self.world, &at.hits.id, at.rays.len);
             },
         );

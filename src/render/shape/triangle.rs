@@ -72,6 +72,9 @@ fn edges<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3]) -> Edges<R> {
         let ours = each3!([(b, c), (c, a), (a, b)], (p, q) => is_ours::<R>(clockwise, p, q));
         hit = hit & (!on_edge[0] | ours[0]) & (!on_edge[1] | ours[1]) & (!on_edge[2] | ours[2]);
     }
+    if !hit.any() {
+        return Edges { e, det, t: zero, hit };
+    }
     // Weights before the sum: products of an edge's determinant with a length would leave the range that squares allow.
     let inverse = R::one() / det;
     let w = each3!(e, x => x * inverse);

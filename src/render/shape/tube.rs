@@ -6,8 +6,8 @@
 
 use super::quadric::{Coefficients, Crossing, Quadric, on_side, roots};
 use super::{BOTTOM, Point, SIDE, TOP, Visit};
-use crate::math::Real;
 use crate::math::real::{each3, three};
+use crate::math::{Mask, Real};
 use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// A profile: at height y the radius is `radius + slope·y`, for y from `bottom` to `top`. Nowhere in between negative.
@@ -62,6 +62,9 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let t0 = R::select(level, t_axis, within);
     let from = ray.moved(t0);
     let x = roots(ray, (t0, each3!(from, m => m.0)), tube, on_side(&own, SIDE));
+    if !(x.real | x.always_inside).any() && own.is_none() {
+        return; // the line passes by
+    }
     let (m, m_lo) = from[1];
     let at_bottom = Crossing { tau: ((bottom - m) - m_lo) / dy, t: t_bottom };
     let at_top = Crossing { tau: ((top - m) - m_lo) / dy, t: t_top };
