@@ -121,7 +121,7 @@ impl Scene {
     /// `n` balls in a room of 40 × 6 × 40, as large as leaves the room as full for every `n`.
     fn balls(n: usize) -> Scene {
         let mut scene = Scene { primitives: Vec::new(), triangles: Vec::new(), boxes: Vec::new() };
-        let size = (1e5 / n as f64).cbrt();
+        let size = rtdsl::math::fun::pow(1e5 / n as f64, 1.0 / 3.0);
         for i in 0..n as u64 {
             let at = [40.0 * random(i, 1) - 20.0, 6.0 * random(i, 2), 40.0 * random(i, 3) - 20.0];
             let at = [0, 1, 2].map(|c| at[c] - [0.0, 14.0, 40.0][c]);

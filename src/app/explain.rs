@@ -48,7 +48,13 @@ fn heading(name: &str, camera: &Camera, options: &Options) -> String {
         1 => "1 ray a pixel".to_string(),
         n => format!("{} rays a pixel", n * n),
     };
-    format!("{name}: {}x{}, {rays}{camera}\n", options.width, options.height)
+    let instructions = render::instructions(options.instructions);
+    let at_a_time = match render::rays_at_a_time(options.instructions, options.precision) {
+        1 => "one ray at a time".to_string(),
+        n => format!("{n} rays at a time"),
+    };
+    let size = (options.width, options.height);
+    format!("{name}: {}x{}, {rays}{camera}\ntraced {at_a_time}, with {instructions} instructions\n", size.0, size.1)
 }
 
 /// The features in use with the lines that forced them, then the others.

@@ -81,14 +81,29 @@ pub fn tiles_of(options: &Options) -> Vec<Crop> {
     start(part.y, part.height).flat_map(row).collect()
 }
 
-/// The instructions that `asked` comes to on this machine, in words: `AVX2 and FMA`, or `common`.
+/// The instructions that `asked` comes to on this machine, in words: `AVX-512`, `AVX2 and FMA`, or `common`.
 pub fn instructions(asked: Instructions) -> &'static str {
     match Build::of(asked) {
         Build::Common => "common",
         #[cfg(target_arch = "x86_64")]
-        Build::Avx2 => "AVX2 and FMA, 4 rays at a time",
+        Build::Avx2 => "AVX2 and FMA",
         #[cfg(target_arch = "x86_64")]
-        Build::Avx512 => "AVX-512, 8 rays at a time",
+        Build::Avx512 => "AVX-512",
+    }
+}
+
+/// How many rays one of those instructions works on.
+pub fn rays_at_a_time(asked: Instructions, precision: Precision) -> usize {
+    let in_f64 = match Build::of(asked) {
+        Build::Common => return 1,
+        #[cfg(target_arch = "x86_64")]
+        Build::Avx2 => lane::F64x4::WIDTH,
+        #[cfg(target_arch = "x86_64")]
+        Build::Avx512 => lane::F64x8::WIDTH,
+    };
+    match precision {
+        Precision::F64 => in_f64,
+        Precision::F32 => 2 * in_f64,
     }
 }
 

@@ -23,6 +23,7 @@ mod footprint;
 pub mod frame;
 mod gathered;
 mod graft;
+mod highlight;
 mod light;
 pub mod material;
 mod nearest;
@@ -48,7 +49,7 @@ mod tracer;
 mod way;
 pub mod world;
 
-pub use dispatch::{Develop, instructions, render, stream};
+pub use dispatch::{Develop, instructions, rays_at_a_time, render, stream};
 pub use options::{Crop, Feature, Instructions, Options, Probe, Progress, RayCounts, Rendered, Silent, Streamed};
 pub use probe::probe;
 pub use retrace::{Built, Plan, Retraced, Retracer};

@@ -6,6 +6,7 @@ use super::candidates::Candidates;
 use super::cull::{Shaft, margin};
 use super::footprint::Recorder;
 use super::gathered::Gathered;
+use super::highlight::power;
 use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::{Slot, Surfacing};
 use super::optics::mirrored;
@@ -18,7 +19,6 @@ use super::span::Span;
 use super::spawn::{Children, Leaving};
 use super::surface_pattern::{PatternFrame, bumped};
 use super::world::World;
-use crate::math::fun;
 use crate::math::real::{Mask, dot, minus, scaled, select3, splat3, three};
 use crate::math::{Elem, Lane};
 
@@ -134,7 +134,7 @@ impl<E: Elem> RunOfHits<'_, E> {
             while rest != 0 {
                 let id = hits.id[g + rest.trailing_zeros() as usize].to_f64();
                 let here = ids.same(L::splat(id));
-                self.keep_another(g, (id as u32, (o, d), at), here, s);
+                self.keep_another(g, id as u32, (o, d), at, here, s);
                 points.hold(live & here, load3(&s.p, g));
                 rest &= !here.bits();
             }
@@ -169,7 +169,9 @@ impl<E: Elem> RunOfHits<'_, E> {
     fn keep_another<L: Lane<Elem = E>>(
         &self,
         g: usize,
-        (id, ray, at): (u32, ([L; 3], [L; 3]), (L, L)),
+        id: u32,
+        ray: ([L; 3], [L; 3]),
+        at: (L, L),
         here: L::Mask,
         s: &mut ShadeScratch<E>,
     ) {
@@ -379,23 +381,3 @@ fn surface_of_mesh<L: Lane>(mesh: &Mesh, ids: L, ray: ([L; 3], [L; 3])) -> Surfa
 /// Relative to the light's distance: how far below its horizon a surface must be to face away whatever rounding does; thousands
 /// of roundings of `f64` and of `f32`.
 const FAR_FROM_GRAZING: f64 = 1.0 / 1024.0;
-
-/// x^exponent for 0 < x ≤ 1. A constant whole exponent goes by squaring.
-#[inline(always)]
-fn power<L: Lane>(x: L, exponent: L, slot: Slot) -> L {
-    match slot {
-        // Beyond 4096 the pinned function is as fast.
-        Slot::Constant([e, ..]) if e.fract() == 0.0 && (0.0..=4096.0).contains(&e) => {
-            let (mut n, mut square, mut product) = (e as u32, x, L::one());
-            while n > 0 {
-                if n & 1 == 1 {
-                    product = product * square;
-                }
-                square = square * square;
-                n >>= 1;
-            }
-            product
-        }
-        _ => L::each([x, exponent], |[x, e]| [if x > 0.0 { fun::pow(x, e) } else { 0.0 }])[0],
-    }
-}

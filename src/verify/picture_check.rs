@@ -241,8 +241,10 @@ fn instructions(subjects: &[Subject], _: Size) -> Outcome {
             }
             let best = Options { precision, ..options(scene, HASHED_WIDTH) };
             let film = picture(scene, &best);
-            let common = picture(scene, &Options { instructions: Instructions::Common, ..best });
-            done.add(|| format!("{name}, {precision:?}"), Some(compare(&film, &common)), any);
+            for instructions in [Instructions::Narrow, Instructions::Common] {
+                let other = picture(scene, &Options { instructions, ..best.clone() });
+                done.add(|| format!("{name}, {precision:?}, {instructions:?}"), Some(compare(&film, &other)), any);
+            }
         }
         if let Some(hash) = hash {
             let is = hashed(scene).hash();

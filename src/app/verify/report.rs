@@ -1,6 +1,7 @@
 //! What a run of the programme found, as data: `--json`. `docs/verify.md` tells of every field.
 
-use crate::render::{Instructions, instructions};
+use crate::render::{Instructions, instructions, rays_at_a_time};
+use crate::scene::Precision;
 use crate::verify::{Bound, Figure, Histogram, Outcome, Size};
 use serde::Serialize;
 
@@ -81,11 +82,14 @@ pub struct Measured {
 impl Machine {
     /// This one.
     pub fn this() -> Machine {
+        let width = |precision| rays_at_a_time(Instructions::Best, precision);
+        let mut lane_widths = vec![width(Precision::F64), width(Precision::F32)];
+        lane_widths.dedup();
         Machine {
             arch: std::env::consts::ARCH,
             os: std::env::consts::OS,
             instructions: instructions(Instructions::Best),
-            lane_widths: vec![1], // of `math::Lane`, which has machine numbers alone so far
+            lane_widths,
             threads: rayon::current_num_threads(),
         }
     }

@@ -1,7 +1,7 @@
 //! The tree of boxes over all bounded primitives: finds what a ray, a tile or a shaft can meet without looking at the rest.
 //!
-//! Eight children a node, boxes of `f32` rounded outwards ([`node`]), built by the surface area heuristic ([`build`]), and gone
-//! through nearest box first ([`walk`]). The same primitives give the same tree, and no picture depends on it: a box is
+//! Eight children a node, boxes of `f32` rounded outwards (`node`), built by the surface area heuristic (`build`), and gone
+//! through nearest box first (`walk`). The same primitives give the same tree, and no picture depends on it: a box is
 //! passed over only where every ray surely misses what is in it.
 
 mod build;
@@ -239,8 +239,9 @@ mod tests {
     }
 
     fn ray(i: u64, size: f64, away: f64) -> ([f64; 3], [f64; 3]) {
-        let far = if i % 3 == 0 { 1e4 } else { 1.0 };
-        let o = [0, 1, 2].map(|k| if i % 7 == 0 { 0.0 } else { away + far * size * (random(i, 20 + k) - 0.2) });
+        let far = if i.is_multiple_of(3) { 1e4 } else { 1.0 };
+        let o =
+            [0, 1, 2].map(|k| if i.is_multiple_of(7) { 0.0 } else { away + far * size * (random(i, 20 + k) - 0.2) });
         let target = [0, 1, 2].map(|k| away + size * random(i, 30 + k));
         let mut d = [0, 1, 2].map(|k| target[k] - o[k]);
         if i % 4 == 1 {
@@ -253,7 +254,7 @@ mod tests {
     fn a_search_for_the_nearest_box_finds_what_testing_all_finds() {
         let mut met = 0;
         for (power, away) in [(0, 0.0), (0, -0.5), (400, 0.0), (-400, -0.3), (0, 1e7), (-60, 1.0), (12, -1e12)] {
-            let size = 2f64.powi(power);
+            let size = f64::from_bits(((1023 + power) as u64) << 52);
             let away = away * size;
             for n in [1, 2, 7, 60, 600, 5000] {
                 let all = boxes(n, size, away);
