@@ -94,16 +94,16 @@ pub fn instructions(asked: Instructions) -> &'static str {
 
 /// How many rays one of those instructions works on.
 pub fn rays_at_a_time(asked: Instructions, precision: Precision) -> usize {
-    let in_f64 = match Build::of(asked) {
-        Build::Common => return 1,
+    match (Build::of(asked), precision) {
+        (Build::Common, _) => 1,
         #[cfg(target_arch = "x86_64")]
-        Build::Avx2 => lane::F64x4::WIDTH,
+        (Build::Avx2, Precision::F64) => lane::F64x4::WIDTH,
         #[cfg(target_arch = "x86_64")]
-        Build::Avx512 => lane::F64x8::WIDTH,
-    };
-    match precision {
-        Precision::F64 => in_f64,
-        Precision::F32 => 2 * in_f64,
+        (Build::Avx2, Precision::F32) => lane::F32x8::WIDTH,
+        #[cfg(target_arch = "x86_64")]
+        (Build::Avx512, Precision::F64) => lane::F64x8::WIDTH,
+        #[cfg(target_arch = "x86_64")]
+        (Build::Avx512, Precision::F32) => lane::F32x16::WIDTH,
     }
 }
 

@@ -55,7 +55,8 @@ struct Level<E: Elem> {
 }
 
 impl<'w, L: Lane> Tracer<'w, L> {
-    /// A tracer of rays that go on for up to `max_depth` reflections and transmissions. It stops within a batch once `cancel` is set, and notes what rays do in `recorder`.
+    /// A tracer of rays that go on for up to `max_depth` reflections and transmissions. It stops within a batch once `cancel` is
+    /// set, and notes what rays do in `recorder`.
     pub fn new(world: &'w World, max_depth: u32, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         Tracer {
             world,
