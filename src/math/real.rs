@@ -132,17 +132,6 @@ pub trait Real:
         self.mul_sub(b, w) + e
     }
 
-    /// `self / s` for a divisor that is the same in all lanes, in place of a division that takes as long as ten products: the
-    /// product with the reciprocal, and what it misses put right (Markstein, "Computation of elementary functions on the IBM
-    /// RISC System/6000 processor", IBM J. Res. Dev. 34, 1990). Half an ulp off at most, but for a hair; NaN where `self` isn't
-    /// finite.
-    #[inline(always)]
-    fn divided_by(self, s: f64) -> Self {
-        let (reciprocal, s) = (Self::splat(1.0 / s), Self::splat(s));
-        let rough = self * reciprocal;
-        (-rough).mul_add(s, self).mul_add(reciprocal, rough)
-    }
-
     /// Zero.
     #[inline(always)]
     fn zero() -> Self {

@@ -147,19 +147,20 @@ impl PatternTable {
         match &self.nodes[id as usize] {
             PatternNode::Constant(c) => splat3(*c),
             PatternNode::Checker(a, b, size) => {
-                let [x, y, z] = each3!(p, x => x.divided_by(*size).floor());
+                let s = R::splat(*size);
+                let [x, y, z] = each3!(p, x => (x / s).floor());
                 self.by_parity(*a, *b, x + y + z, at)
             }
             PatternNode::Stripes(a, b, axis, size) => {
-                self.by_parity(*a, *b, p[*axis as usize].divided_by(*size).floor(), at)
+                self.by_parity(*a, *b, (p[*axis as usize] / R::splat(*size)).floor(), at)
             }
             PatternNode::Rings(a, b, axis, size) => {
                 let (i, j) = ((*axis as usize + 1) % 3, (*axis as usize + 2) % 3);
                 let rho = (p[i] * p[i] + p[j] * p[j]).sqrt();
-                self.by_parity(*a, *b, rho.divided_by(*size).floor(), at)
+                self.by_parity(*a, *b, (rho / R::splat(*size)).floor(), at)
             }
             PatternNode::Gradient(a, b, axis, size) => {
-                let s = clamp01(p[*axis as usize].divided_by(*size));
+                let s = clamp01(p[*axis as usize] / R::splat(*size));
                 self.lerp(*a, *b, [s; 3], at)
             }
             PatternNode::Noise(a, b, octaves, seed) => {
