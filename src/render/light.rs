@@ -193,7 +193,7 @@ impl<L: Lane> Open<'_, L> {
     fn through_tree(&mut self, world: &World, scratch: &mut Shadow, recorder: &mut Recorder) {
         let Shadow { transparent, ways, deep, .. } = scratch;
         let way = &mut ways[*deep as usize];
-        if L::WIDTH > 1 && way.is_due() {
+        if Way::is_free::<L>() && way.is_due() {
             let before = self.mask;
             way.try_both(|together| {
                 self.mask = before;
@@ -202,7 +202,7 @@ impl<L: Lane> Open<'_, L> {
                     false => self.one_by_one(world, transparent, recorder),
                 }
             });
-        } else if L::WIDTH > 1 && way.is_together() {
+        } else if Way::is_free::<L>() && way.is_together() {
             self.together(world, transparent, recorder);
         } else {
             self.one_by_one(world, transparent, recorder);
