@@ -7,6 +7,7 @@ use super::bounds::Bounds;
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
 use super::census::{PrimitiveKey, same_geometry, surfaces_renumbered};
+use super::confine::is_extreme;
 use super::digest::{LengthKey, MaterialDigest, material_digests};
 use super::frame::{Axes, Frame, LinearMap};
 use super::material::MaterialCompiler;
@@ -34,6 +35,7 @@ struct Piece {
     triangles: Vec<TriangleData>,
     spaces: Vec<MadeSpace>,
     unbounded: Vec<Unbounded>,
+    extremes: Vec<(u32, Bounds)>,
     bounded: Vec<(u32, Bounds)>,
     meshes: Vec<(u32, MeshId, bool, Affine)>,
 }
@@ -76,6 +78,7 @@ impl World {
             owners: Owners::default(),
             spaces: Vec::new(),
             unbounded: Vec::new(),
+            extremes: Vec::new(),
             flocks: Vec::new(),
             bvh: Bvh::default(),
             materials: Vec::new(),
@@ -232,6 +235,7 @@ impl World {
         self.triangles.extend(piece.triangles);
         self.spaces.extend(piece.spaces);
         self.unbounded.extend(piece.unbounded);
+        self.extremes.extend(piece.extremes);
         bounded.extend(piece.bounded);
         meshes.extend(piece.meshes);
     }
@@ -301,10 +305,19 @@ impl Piece {
             }
         };
         match placed.extent {
-            Some(extent) => self.bounded.push((id, world_bounds(extent, &placed.world_from_local))),
+            Some(extent) => {
+                let bounds = world_bounds(extent, &placed.world_from_local);
+                if is_extreme(extent[1], &placed.world_from_local) {
+                    self.extremes.push((id, bounds));
+                }
+                self.bounded.push((id, bounds));
+            }
             None if matches!(kind, Kind::Plane) => {
                 let n = frame.normal_to_world(&self.maps, [0.0, 1.0, 0.0]);
-                let offset = (0..3).map(|i| n[i] * frame.centre[i]).sum();
+                // As rays find it: of a plane that passes by here, but is said to go through somewhere far away, the coordinates
+                // cancel.
+                let from_here = frame.localize::<f64, true>(&self.maps, [0.0; 3], n);
+                let offset = -(from_here.o[1] + from_here.o_lo[1]) / from_here.d[1];
                 self.unbounded.push(Unbounded { id, n, offset });
             }
             None => {}

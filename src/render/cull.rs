@@ -30,9 +30,9 @@ impl Frustum {
     #[inline]
     pub fn may_meet(&self, b: &Bounds) -> bool {
         self.planes.iter().all(|&(n, offset)| {
-            let q = b.support(n);
-            let size = (n[0] * q[0]).abs() + (n[1] * q[1]).abs() + (n[2] * q[2]).abs() + offset.abs();
-            dot(n, q) - offset >= -self.margin * size
+            // A face near by is no better than the far one of the same box: a kernel's numbers are centre and size.
+            let size = size_along(b, n) + offset.abs();
+            dot(n, b.support(n)) - offset >= -self.margin * size
         })
     }
 }
@@ -58,7 +58,7 @@ impl Shaft {
     /// Whether the box may reach into it.
     #[inline]
     pub fn may_meet(&self, b: &Bounds) -> bool {
-        if !self.hull.overlaps(b) {
+        if !self.hull.overlaps(&widened(*b, self.margin)) {
             return false;
         }
         let (to, radius) = (minus(b.centre(), self.cone.apex), b.radius());
@@ -159,13 +159,14 @@ fn plane_range(b: &Bounds, n: [f64; 3], offset: f64) -> (f64, f64) {
 }
 
 fn size_along(b: &Bounds, n: [f64; 3]) -> f64 {
-    larger(size_of_dot(n, b.lo), size_of_dot(n, b.hi))
+    (0..3).map(|i| n[i].abs() * larger(b.lo[i].abs(), b.hi[i].abs())).sum()
 }
 
 fn size_of_dot(n: [f64; 3], p: [f64; 3]) -> f64 {
     (0..3).map(|i| (n[i] * p[i]).abs()).sum()
 }
 
+#[inline]
 fn widened(b: Bounds, margin: f64) -> Bounds {
     let reach: [f64; 3] = std::array::from_fn(|i| margin * larger(b.lo[i].abs(), b.hi[i].abs()));
     Bounds { lo: std::array::from_fn(|i| b.lo[i] - reach[i]), hi: std::array::from_fn(|i| b.hi[i] + reach[i]) }

@@ -21,7 +21,7 @@ pub struct Way {
 
 /// Not yet: in 5 of 100,000 strange scenes (`rtdsl verify --only strange --extremes`), flat ones and tiny ones, rays together found something
 /// else than rays alone. Until that is mended all go alone, which costs scenes of many large shapes up to four times the time.
-const BOTH_FIND_THE_SAME: bool = false;
+const BOTH_FIND_THE_SAME: bool = true;
 
 /// Registers of rays between two trials: a trial costs a few per cent of what it decides on.
 const PERIOD: u32 = 40;

@@ -7,6 +7,7 @@
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
+use super::confine::Confined;
 use super::frame::LinearMap;
 use super::material::{Slot, Surfacing};
 use super::pattern::PatternTable;
@@ -30,6 +31,8 @@ pub struct World {
     pub(super) owners: Owners,
     pub(super) spaces: Vec<MadeSpace>,
     pub(super) unbounded: Vec<Unbounded>,
+    /// Boxes of primitives of extreme proportions, by ascending number.
+    pub(super) extremes: Vec<(u32, Bounds)>,
     /// By primitive; see [`World::flock`].
     pub(super) flocks: Vec<u32>,
     pub(super) bvh: Bvh,
@@ -195,10 +198,21 @@ impl World {
         visit: &mut impl Visit<R>,
     ) {
         if let Some(primitive) = self.primitives.get(id as usize) {
+            let visit = &mut Confined::new(self.confines(id), (o, d), visit);
             return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
         }
         let (mesh, k) = self.triangle(id);
         mesh.crossing(k, (o, d), own, visit);
+    }
+
+    /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.
+    #[inline(always)]
+    fn confines(&self, id: u32) -> Option<&Bounds> {
+        if self.extremes.is_empty() {
+            return None;
+        }
+        let at = self.extremes.binary_search_by_key(&id, |e| e.0).ok()?;
+        Some(&self.extremes[at].1)
     }
 
     /// Surface `id` where rays are at `t`, on `part`.
@@ -267,6 +281,7 @@ impl World {
             + self.spaces.len() * size_of::<MadeSpace>()
             + self.flocks.len() * size_of::<u32>()
             + self.unbounded.len() * size_of::<Unbounded>()
+            + self.extremes.len() * size_of::<(u32, Bounds)>()
             + self.lights.iter().map(|l| size_of::<PointLight>() + size_of_val(&*l.touched)).sum::<usize>()
             + self.materials.len() * size_of::<Surfacing>()
             + self.bvh.memory_bytes()

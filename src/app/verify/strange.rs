@@ -1,12 +1,12 @@
 //! Scenes that nobody would write, from text to picture: each is a picture of finite numbers or an error with a place, never a
-//! panic, and the order of shapes in the text changes nothing.
+//! panic, and neither the order of shapes in the text nor how rays are put together changes anything.
 
 use super::built_in::folder;
 use super::writer::{Writer, Written};
 use crate::diag::Span;
 use crate::film::Film;
 use crate::lang::{self, Failure, Input, Request};
-use crate::render::{Options, Silent, World, render};
+use crate::render::{Instructions, Options, Silent, World, render};
 use crate::scene::Precision;
 use crate::verify::{Bound, Check, Figure, Outcome};
 use std::collections::HashSet;
@@ -77,6 +77,11 @@ pub fn faults(assets: &Path, seed: u64, count: u64) -> (Vec<String>, u64) {
 /// # Errors
 /// The text is wrong.
 pub fn picture(assets: &Path, text: &str) -> Result<Film, Failure> {
+    drawn(assets, text, false)
+}
+
+/// The same; `otherwise`: of other tiles, and with one ray at a time.
+fn drawn(assets: &Path, text: &str, otherwise: bool) -> Result<Film, Failure> {
     let main = Input::Text { name: "try.scene".into(), bytes: text.as_bytes().to_vec(), folder: assets.into() };
     let request = Request { main, set: Vec::new(), allow_read: Vec::new(), record_arguments: false };
     let evaluated = lang::evaluate(&request)?;
@@ -85,6 +90,9 @@ pub fn picture(assets: &Path, text: &str) -> Result<Film, Failure> {
     let mut options = Options { threads: Some(1), ..Options::from_settings(&scene.settings) };
     if world.beyond_f32().is_some() {
         options.precision = Precision::F64; // the program says so and stops
+    }
+    if otherwise {
+        (options.tile, options.instructions) = (3, Instructions::Common);
     }
     let rendered = render(&world, &options, &Silent, &AtomicBool::new(false));
     Ok(rendered.map_or_else(|| Film::new(0, 0), |r| r.film)) // nothing cancels it
@@ -128,9 +136,13 @@ fn fault_of_picture(assets: &Path, film: &Film, of: &Written) -> Option<String> 
     if !film.pixels.as_flattened().iter().all(|x| x.is_finite()) {
         return Some("a pixel isn't a number".into());
     }
-    match picture(assets, &of.reversed()) {
-        Ok(other) if other.hash() == film.hash() => None,
-        Ok(_) => Some("the order of shapes changes the picture".into()),
+    let same = |text: &str, otherwise| drawn(assets, text, otherwise).map(|other| other.hash() == film.hash());
+    match same(&of.reversed(), true) {
+        Ok(true) => None,
+        Ok(false) if same(&of.reversed(), false).is_ok_and(|same| same) => {
+            Some("tiles or lanes change the picture".into())
+        }
+        Ok(false) => Some("the order of shapes changes the picture".into()),
         Err(_) => Some("the order of shapes makes an error".into()),
     }
 }

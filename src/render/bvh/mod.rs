@@ -6,15 +6,14 @@
 
 mod build;
 pub(super) mod node;
-mod slabs;
 mod split;
 mod walk;
 
 use super::bounds::Bounds;
+use super::slabs::Slabs;
 use crate::math::{Lane, Mask};
 use node::{Box4, Child, Fit, Node};
 use rayon::prelude::*;
-use slabs::Slabs;
 use split::Item;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use walk::Beam;

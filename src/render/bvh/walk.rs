@@ -222,7 +222,8 @@ impl Beam {
             let Some(way) = along[i].way else { continue };
             let (low, high) = (o[i][0] + start * d[i][0], o[i][1] + start * d[i][1]);
             let gone = larger(o[i][0].abs(), o[i][1].abs()) + start * larger(d[i][0].abs(), d[i][1].abs());
-            let slack = reach + F64_SLACK * (gone + fit.origin[i].abs()) + shorter * fit.origin[i].abs();
+            let far = larger(bounds.lo[i].abs(), bounds.hi[i].abs());
+            let slack = reach + F64_SLACK * (gone + fit.origin[i].abs()) + shorter * far;
             let (low, high) = ((low - fit.origin[i] - slack) * fit.scale, (high - fit.origin[i] + slack) * fit.scale);
             let low = (low - low.abs() * (F32_SLACK + shorter) - LEAST) as f32;
             let high = (high + high.abs() * (F32_SLACK + shorter) + LEAST) as f32;

@@ -8,6 +8,7 @@ use super::{Surface, Visit};
 use crate::math::real::{axpy, dot, each3, minus, scaled, select3, three};
 use crate::math::{Mask, Real};
 use crate::render::ray::Own;
+use crate::render::slabs::Slabs;
 
 /// A triangle's corners relative to the camera, with what a hit needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +44,8 @@ fn is_ours<R: Real>(clockwise: R::Mask, p: (R, R), q: (R, R)) -> R::Mask {
 }
 
 #[inline(always)]
-fn edges<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3]) -> Edges<R> {
+fn edges<R: Real>(v: [[R; 3]; 3], ray: ([R; 3], [R; 3])) -> Edges<R> {
+    let (o, d) = ray;
     let zero = R::zero();
     // The axis along which the ray goes furthest becomes z, so that the shear never divides by something small.
     let (ax, ay, az) = (d[0].abs(), d[1].abs(), d[2].abs());
@@ -78,14 +80,33 @@ fn edges<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3]) -> Edges<R> {
     // Weights before the sum: products of an edge's determinant with a length would leave the range that squares allow.
     let inverse = R::one() / det;
     let w = each3!(e, x => x * inverse);
-    let t = w[0].mul_add(a[2], w[1].mul_add(b[2], w[2] * c[2])) * sz;
+    let depth = w[0].mul_add(a[2], w[1].mul_add(b[2], w[2] * c[2]));
+    let mut t = depth * sz;
+    let furthest = a[2].abs().max(b[2].abs()).max(c[2].abs());
+    let cancelled = hit & (R::splat(CANCELLED) * depth.abs()).lt(furthest);
+    if cancelled.any() {
+        let (enter, leave) = stay(v, ray);
+        t = R::select(cancelled, t.max(enter).min(leave), t);
+        hit = hit & (!cancelled | enter.le(leave));
+    }
     Edges { e, det, t, hit }
+}
+
+/// Depths of corners this many times that of a crossing leave so much of their rounding errors in it that it may lie outside the
+/// triangle's box, where it would depend on the order of tests whether it is seen.
+const CANCELLED: f64 = 256.0;
+
+/// From which t to which rays are in the box around the corners.
+#[inline(always)]
+fn stay<R: Real>([a, b, c]: [[R; 3]; 3], (o, d): ([R; 3], [R; 3])) -> (R, R) {
+    let faces = [three!(i => a[i].min(b[i]).min(c[i])), three!(i => a[i].max(b[i]).max(c[i]))];
+    Slabs::narrow(o, d).stay_near(faces)
 }
 
 /// Calls `visit(t, part, valid)` for the crossing with the triangle between the corners `v`: one for all lanes, or one a lane.
 #[inline(always)]
 pub fn crossing<R: Real>(v: [[R; 3]; 3], o: [R; 3], d: [R; 3], own: Option<Own<R>>, visit: &mut impl Visit<R>) {
-    let x = edges(v, o, d);
+    let x = edges(v, (o, d));
     let mut valid = x.hit;
     if !valid.any() {
         return;
@@ -110,7 +131,7 @@ pub struct Sides<R> {
 #[inline(always)]
 pub fn surface<R: Real>(tri: Sides<R>, o: [R; 3], d: [R; 3]) -> Surface<R> {
     let Sides { v, n, shading } = tri;
-    let x = edges(v, o, d);
+    let x = edges(v, (o, d));
     let (beta, gamma) = (x.e[1] / x.det, x.e[2] / x.det);
     // From the first corner along the edges: a coordinate that all corners share is then met exactly.
     let (along, across) = (minus(v[1], v[0]), minus(v[2], v[0]));
