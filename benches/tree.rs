@@ -9,6 +9,7 @@ use rtdsl::math::{Affine, Elem, Lane, Mask, Real};
 use rtdsl::render::bounds::Bounds;
 use rtdsl::render::bvh::{Bvh, Leaves, Spread};
 use rtdsl::render::frame::Frame;
+use rtdsl::render::ray::Line;
 use rtdsl::render::shape::primitive::Tables;
 use rtdsl::render::shape::{Kind, Primitive, TriangleData, Visit};
 use std::path::Path;
@@ -205,7 +206,7 @@ impl<L: Lane> Nearest<'_, L> {
         self.current = L::splat(id as f64);
         let tables = Tables { maps: &[], triangles: &self.scene.triangles };
         let (o, d) = (self.o, self.d);
-        self.scene.primitives[id as usize].crossings::<L, false>(tables, o, d, None, self);
+        self.scene.primitives[id as usize].crossings::<L, false>(tables, Line::new(o, d), None, self);
     }
 }
 

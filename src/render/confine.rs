@@ -53,13 +53,23 @@ pub struct Confined<'v, R, V> {
 impl<'v, R: Real, V: Visit<R>> Confined<'v, R, V> {
     /// Crossings of rays from `o` along `d`, within `bounds`, if there are any.
     #[inline(always)]
-    pub fn new(bounds: Option<&Bounds>, (o, d): ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
-        let stay = bounds.map(
-            #[inline(always)]
-            |b| Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)]),
-        );
-        Confined { visit, stay }
+    pub fn new(bounds: Option<&Bounds>, ray: ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
+        let mut confined = Confined { visit, stay: None };
+        if let Some(b) = bounds {
+            confined.stay = Some(stay_in(b, ray)); // no closure: it might not be inlined where this is
+        }
+        confined
     }
+}
+
+/// From which t to which rays are in a box; in a function of its own, or its divisions would be taken out of loops that seldom need
+/// them.
+#[inline(always)]
+fn stay_in<R: Real>(b: &Bounds, (o, d): ([R; 3], [R; 3])) -> (R, R) {
+    R::vectorize(
+        #[inline(always)]
+        || Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)]),
+    )
 }
 
 impl<R: Real, V: Visit<R>> Visit<R> for Confined<'_, R, V> {
@@ -70,6 +80,10 @@ impl<R: Real, V: Visit<R>> Visit<R> for Confined<'_, R, V> {
             // Not left out where it is before or after its stay: a hole would be worse than a rounding error.
             Some((enter, leave)) => self.visit.crossing(t.max(enter).min(leave), part, valid & enter.le(leave)),
         }
+    }
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> bool {
+        self.stay.is_some() || self.visit.needs_further(t, valid)
     }
 }
 

@@ -4,7 +4,7 @@ use super::batch::PADDING;
 use super::bvh::{Leaves, Spread};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
-use super::ray::Own;
+use super::ray::{Line, Own};
 use super::shape::{Mesh, Visit};
 use super::span::{least, stored};
 use super::surface_pattern::PatternFrame;
@@ -57,7 +57,7 @@ impl<L: Lane> ShadowRays<'_, L> {
     #[inline(always)]
     fn crossings(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
         let own = Own::of(self.source.same(L::splat(k as f64)), self.part, self.outward.same(L::one()));
-        world.crossings::<L, false>(k, (self.o, self.l), own, visit);
+        world.crossings::<L, false>(k, Line::unit(self.o, self.l), own, visit);
     }
 
     /// The crossings with surface `k` that lie between start and light; in a function of its own, for it is seldom asked.
@@ -344,6 +344,11 @@ struct Blocked<R: Real> {
 }
 
 impl<R: Real> Visit<R> for Blocked<R> {
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> bool {
+        (valid & !R::zero().lt(t)).any()
+    }
+
     #[inline(always)]
     fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
         self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));

@@ -6,7 +6,8 @@
 //! meet.
 
 mod assemble;
-pub mod batch;
+pub mod ball;
+mod batch;
 mod belt;
 pub mod bounds;
 pub mod bvh;

@@ -4,6 +4,7 @@
 //! never changes a pixel: where two surfaces coincide exactly, the same one is always in front, and an opaque one before one
 //! that light goes through.
 
+use super::ball::is_passed_by;
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
@@ -12,7 +13,7 @@ use super::frame::LinearMap;
 use super::material::{Slot, Surfacing};
 use super::pattern::PatternTable;
 use super::place::Rescale;
-use super::ray::Own;
+use super::ray::{Line, Own};
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
 use super::touch::{lies_on, lies_on_triangle, neighbourhood};
@@ -118,6 +119,7 @@ impl World {
             let around = neighbourhood(light.at);
             let mut near: Vec<u32> = self.unbounded.iter().map(|p| p.id).collect();
             self.bvh.gather(
+                usize::MAX,
                 |b| b.overlaps(&around),
                 |id| {
                     near.push(id);
@@ -188,21 +190,24 @@ impl World {
         ids.iter().all(|id| own.contains(id)).then_some(mesh)
     }
 
-    /// Calls `visit` for every crossing of lines with surface `id`; see [`Primitive::crossings`].
+    /// Calls `visit` for every crossing of lines with surface `id` at t > 0, and for some behind; see [`Primitive::crossings`].
     #[inline(always)]
     pub(super) fn crossings<R: Real, const AT_EYE: bool>(
         &self,
         id: u32,
-        (o, d): ([R; 3], [R; 3]),
+        line: Line<R>,
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
         if let Some(primitive) = self.primitives.get(id as usize) {
-            let visit = &mut Confined::new(self.confines(id), (o, d), visit);
-            return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+            if is_passed_by::<R, AT_EYE>(primitive, &self.maps, &line) {
+                return;
+            }
+            let visit = &mut Confined::new(self.confines(id), (line.o, line.d), visit);
+            return primitive.crossings::<R, AT_EYE>(self.tables(), line, own, visit);
         }
         let (mesh, k) = self.triangle(id);
-        mesh.crossing(k, (o, d), own, visit);
+        mesh.crossing(k, (line.o, line.d), own, visit);
     }
 
     /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.

@@ -94,7 +94,7 @@ fn edges<R: Real>(v: [[R; 3]; 3], ray: ([R; 3], [R; 3])) -> Edges<R> {
 
 /// Depths of corners this many times that of a crossing leave so much of their rounding errors in it that it may lie outside the
 /// triangle's box, where it would depend on the order of tests whether it is seen.
-const CANCELLED: f64 = 256.0;
+const CANCELLED: f64 = (1 << 8) as f64;
 
 /// From which t to which rays are in the box around the corners.
 #[inline(always)]
@@ -145,7 +145,10 @@ pub fn surface<R: Real>(tri: Sides<R>, o: [R; 3], d: [R; 3]) -> Surface<R> {
         let (e1, e2) = (along[i].abs(), across[i].abs());
         u5 * b.mul_add(e1, c.mul_add(e2, v[0][i].abs())) + u6 * (e1 + e2)
     });
-    let ns = shading.map_or(n, |s| shading_normal(s, (beta, gamma), n));
+    let ns = match shading {
+        Some(s) => shading_normal(s, (beta, gamma), n),
+        None => n,
+    };
     Surface { p, n, ns, offset: dot(each3!(n, x => x.abs()), error), local: [beta, R::zero(), gamma] }
 }
 
