@@ -37,10 +37,10 @@ fn radius_square(primitive: &Primitive, maps: &[LinearMap]) -> Option<f64> {
     }
 }
 
-/// Whether all rays surely miss the primitive at every t > 0, and by far.
+/// Which rays surely miss the primitive at every t > 0, and by far.
 #[inline(always)]
-pub fn is_passed_by<R: Real, const AT_EYE: bool>(primitive: &Primitive, maps: &[LinearMap], line: &Line<R>) -> bool {
-    let Some(square) = radius_square(primitive, maps) else { return false };
+pub fn passing_by<R: Real, const AT_EYE: bool>(primitive: &Primitive, maps: &[LinearMap], line: &Line<R>) -> R::Mask {
+    let Some(square) = radius_square(primitive, maps) else { return R::Mask::splat(false) };
     let centre = three!(i => R::splat(primitive.frame.centre[i]));
     let to = if AT_EYE { centre } else { three!(i => centre[i] - line.o[i]) };
     let (along, away) = (dot(to, line.d), dot(to, to));
@@ -49,5 +49,5 @@ pub fn is_passed_by<R: Real, const AT_EYE: bool>(primitive: &Primitive, maps: &[
     let (sure, reach) = (R::splat(1.0 - margin) * away, R::splat((1.0 + margin) * square));
     let beside = reach.lt(sure - (along * along) * line.per_square);
     let behind = along.lt(R::zero()) & reach.lt(sure);
-    !(!(beside | behind)).any()
+    beside | behind
 }

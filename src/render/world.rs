@@ -4,7 +4,7 @@
 //! never changes a pixel: where two surfaces coincide exactly, the same one is always in front, and an opaque one before one
 //! that light goes through.
 
-use super::ball::is_passed_by;
+use super::ball::passing_by;
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
@@ -17,7 +17,7 @@ use super::ray::{Line, Own};
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
 use super::touch::{lies_on, lies_on_triangle, neighbourhood};
-use crate::math::{Affine, Dd, Real};
+use crate::math::{Affine, Dd, Mask, Real};
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{MaterialId, NodeId};
 
@@ -200,10 +200,11 @@ impl World {
         visit: &mut impl Visit<R>,
     ) {
         if let Some(primitive) = self.primitives.get(id as usize) {
-            if is_passed_by::<R, AT_EYE>(primitive, &self.maps, &line) {
+            let met = !passing_by::<R, AT_EYE>(primitive, &self.maps, &line);
+            if !met.any() {
                 return;
             }
-            let visit = &mut Confined::new(self.confines(id), (line.o, line.d), visit);
+            let visit = &mut Confined::new(met, self.confines(id), (line.o, line.d), visit);
             return primitive.crossings::<R, AT_EYE>(self.tables(), line, own, visit);
         }
         let (mesh, k) = self.triangle(id);

@@ -38,7 +38,8 @@ pub(super) fn crossings<R: Real>(half: [f64; 3], ray: &LocalRay<R>, own: Option<
         let t_in = enter.to / enter.d;
         visit.crossing(t_in, enter.part, crosses);
         if visit.needs_further(t_in, crosses) {
-            visit.crossing(leave.to / leave.d, leave.part, crosses);
+            // Of an edge, rounding may put the way out before the way in; then whether it was asked for must not matter.
+            visit.crossing((leave.to / leave.d).max(t_in), leave.part, crosses);
         }
         return;
     }

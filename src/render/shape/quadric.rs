@@ -99,7 +99,11 @@ pub fn roots<R: Real>(
     let pair = Pair::new(a, b, c, disc);
     let x = pair.smaller();
     let (mut lo, mut hi) = (Crossing { tau: x, t: t0 + x }, Crossing::never(1.0));
-    if starts_here || needs_further(lo.t, real) {
+    // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
+    // numbers, of which the sign says nothing.
+    let (eight, shift) = (R::splat(8.0), t0.abs());
+    let near = |t: R| real & (t.abs() * eight).lt(shift);
+    if starts_here || near(lo.t).any() || needs_further(lo.t, real) {
         let y = pair.larger();
         // Of two that are all but one, rounding may exchange them.
         let (x, y) = (x.min(y), x.max(y));
@@ -107,17 +111,15 @@ pub fn roots<R: Real>(
     }
     let mut found = Roots { lo, hi, real, a, always_inside: constant & c.le(zero) };
 
-    // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
-    // numbers. Such rays start near the surface, where the coefficients at the ray's own origin are the good ones. An
-    // eighth loses at most three of 53 bits.
-    let (eight, shift) = (R::splat(8.0), t0.abs());
-    let near_lo = real & (lo.t.abs() * eight).lt(shift);
-    let near_hi = real & (hi.t.abs() * eight).lt(shift);
+    // Such rays start near the surface, where the coefficients at the ray's own origin are the good ones. An eighth loses at
+    // most three of 53 bits.
+    let (near_lo, near_hi) = (near(lo.t), near(hi.t));
     if (near_lo | near_hi).any() {
         let k = form.coefficients(ray.o, d);
         let pair = Pair::new(k.a, k.b, k.c, k.b.difference_of_products(k.b, k.a, k.c));
-        lo.t = R::select(near_lo, pair.smaller(), lo.t);
-        hi.t = R::select(near_hi, pair.larger(), hi.t);
+        let (x, y) = (pair.smaller(), pair.larger());
+        lo.t = R::select(near_lo, x.min(y), lo.t);
+        hi.t = R::select(near_hi, x.max(y), hi.t);
         (found.lo, found.hi) = (lo, hi);
     }
     if doubt.any() {
