@@ -5,7 +5,7 @@ use rtdsl::math::hash::KeyedHash;
 use rtdsl::math::real::{Bool, axpy, dot};
 use rtdsl::math::{Affine, Lane};
 use rtdsl::render::frame::{Frame, LinearMap};
-use rtdsl::render::ray::{Line, Own};
+use rtdsl::render::ray::Own;
 use rtdsl::render::shape::primitive::{Tables, spawn_point};
 use rtdsl::render::shape::{Kind, Primitive, Ring, TriangleData, Tube};
 
@@ -89,7 +89,7 @@ impl Case {
                 found.push((t, part));
             }
         };
-        self.primitive.crossings::<f64, false>(self.tables(), Line::new(o, d), own, &mut keep);
+        self.primitive.crossings::<f64, false>(self.tables(), o, d, own, &mut keep);
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found
     }
@@ -177,7 +177,7 @@ fn kernels_of_both_precisions_agree() {
                 best = t;
             }
         };
-        c.primitive.crossings::<L, false>(c.tables(), Line::new(o.map(L::splat), d.map(L::splat)), None, &mut keep);
+        c.primitive.crossings::<L, false>(c.tables(), o.map(L::splat), d.map(L::splat), None, &mut keep);
         best.is_finite().then_some(best)
     }
     for (name, kind, _) in shapes() {

@@ -13,7 +13,6 @@ use super::frame::{Axes, Frame, LinearMap};
 use super::material::MaterialCompiler;
 use super::pattern::PatternTable;
 use super::place::{Form, Placed, parts, world_bounds};
-use super::ray::Line;
 use super::shape::{Kind, Mesh, Primitive, TriangleData};
 use super::standing::{Part, Standing, made, made_space};
 use super::world::{MadeSpace, Owners, Unbounded, World};
@@ -317,7 +316,7 @@ impl Piece {
                 let n = frame.normal_to_world(&self.maps, [0.0, 1.0, 0.0]);
                 // As rays find it: of a plane that passes by here, but is said to go through somewhere far away, the coordinates
                 // cancel.
-                let from_here = frame.localize::<f64, true>(&self.maps, Line::unit([0.0; 3], n));
+                let from_here = frame.localize::<f64, true>(&self.maps, [0.0; 3], n);
                 let offset = -(from_here.o[1] + from_here.o_lo[1]) / from_here.d[1];
                 self.unbounded.push(Unbounded { id, n, offset });
             }

@@ -4,7 +4,7 @@
 //! ray's origin reaches the shape's frame with its rounding error beside it (TwoSum, TwoProd): the coefficients of a far
 //! shape are then as good as those of a near one.
 
-use super::ray::{Line, LocalRay};
+use super::ray::LocalRay;
 use crate::math::real::{dot, each3, splat3, three};
 use crate::math::{Affine, Real};
 
@@ -37,24 +37,14 @@ pub struct LinearMap {
     pub world_from_local: [[f64; 3]; 3],
     /// Whether it only exchanges axes and signs: a mirror, a quarter turn. Such a map is exact, and normals keep their length.
     pub exchange: bool,
-    /// Whether it keeps lengths, all but exactly.
-    pub rigid: bool,
 }
-
-/// Far above the rounding of a rotation's numbers, and so near to 1 that a length's square may stand for another's.
-const RIGID: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl LinearMap {
     /// The map with these rows and its inverse's.
     pub fn new(world_from_local: [[f64; 3]; 3], local_from_world: [[f64; 3]; 3]) -> LinearMap {
         let exchange = world_from_local.as_flattened().iter().all(|x| *x == 0.0 || x.abs() == 1.0)
             && world_from_local.iter().all(|row| row.iter().filter(|x| **x != 0.0).count() == 1);
-        let rows = local_from_world;
-        let rigid = (0..3).all(|i| {
-            (0..=i)
-                .all(|k| ((0..3).map(|c| rows[i][c] * rows[k][c]).sum::<f64>() - (i == k) as u8 as f64).abs() <= RIGID)
-        });
-        LinearMap { local_from_world, world_from_local, exchange, rigid }
+        LinearMap { local_from_world, world_from_local, exchange }
     }
 }
 
@@ -75,8 +65,7 @@ impl Frame {
 
     /// The ray in this frame. `AT_EYE` says that every origin is exactly 0, which spares the subtraction.
     #[inline(always)]
-    pub fn localize<R: Real, const AT_EYE: bool>(&self, maps: &[LinearMap], line: Line<R>) -> LocalRay<R> {
-        let Line { o, d, per_square } = line;
+    pub fn localize<R: Real, const AT_EYE: bool>(&self, maps: &[LinearMap], o: [R; 3], d: [R; 3]) -> LocalRay<R> {
         let f: [(R, R); 3] = three!(i => {
             let (c, c_lo) = (R::splat(-self.centre[i]), R::splat(-self.centre_lo[i]));
             if AT_EYE {
@@ -92,25 +81,20 @@ impl Frame {
             o_lo: [f[a].1, f[b].1, f[c].1],
             d: [d[a], d[b], d[c]],
             d_lo,
-            per_square,
         };
         match self.axes {
             Axes::Cyclic(0) => renamed(0, 1, 2),
             Axes::Cyclic(1) => renamed(1, 2, 0),
             Axes::Cyclic(_) => renamed(2, 0, 1),
             Axes::Linear(m) => {
-                let map = &maps[m as usize];
-                let rows = &map.local_from_world;
+                let rows = &maps[m as usize].local_from_world;
                 let (from, from_lo) = (each3!(f, x => x.0), each3!(f, x => x.1));
-                let mut out = LocalRay { o: d, o_lo: d, d, d_lo, per_square };
+                let mut out = LocalRay { o: d, o_lo: d, d, d_lo };
                 for (r, row) in rows.iter().enumerate() {
                     let a = splat3::<R>(*row);
                     let (o, o_lo) = long_dot(a, from);
                     (out.o[r], out.o_lo[r]) = (o, o_lo + dot(a, from_lo));
                     (out.d[r], out.d_lo[r]) = long_dot(a, d);
-                }
-                if !map.rigid {
-                    out.per_square = R::one() / dot(out.d, out.d);
                 }
                 out
             }
@@ -198,7 +182,7 @@ mod tests {
             a.linear = cyclic_rows(k).map(|r| r.map(crate::math::Dd::new));
             let frame = Frame::new(&a, |_| panic!("no table needed"));
             assert_eq!(frame.axes, Axes::Cyclic(k));
-            let ray = frame.localize::<f64, false>(&[], Line::new([11.0, 22.0, 33.0], [1.0, 2.0, 3.0]));
+            let ray = frame.localize::<f64, false>(&[], [11.0, 22.0, 33.0], [1.0, 2.0, 3.0]);
             assert_eq!(frame.point_to_world(&[], ray.o), [11.0, 22.0, 33.0]);
             assert_eq!(frame.vector_to_world(&[], ray.d), [1.0, 2.0, 3.0]);
         }
@@ -234,8 +218,8 @@ mod tests {
             });
             let across = DVec3::from_array(maps[0].local_from_world[1]).cross(DVec3::new(1.0, k, 0.2)).normalize();
             let d = across.to_array();
-            let fast = frame.localize::<f64, false>(&maps, Line::new([0.0; 3], d)).d[1];
-            let exact = frame.localize::<Dd, false>(&maps, Line::new([Dd::default(); 3], d.map(Dd::new))).d[1].hi;
+            let fast = frame.localize::<f64, false>(&maps, [0.0; 3], d).d[1];
+            let exact = frame.localize::<Dd, false>(&maps, [Dd::default(); 3], d.map(Dd::new)).d[1].hi;
             assert!((fast - exact).abs() <= 1e-12 * exact.abs(), "{i}: {fast} for {exact}");
             tiny += (exact.abs() < 1e-15 && exact != 0.0) as u32;
         }
@@ -250,7 +234,7 @@ mod tests {
             maps.push(m);
             0
         });
-        let ray = frame.localize::<f64, false>(&maps, Line::new([0.1, 0.0, 0.0], [1.0, 0.0, 0.0]));
+        let ray = frame.localize::<f64, false>(&maps, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0]);
         let total = (ray.o[0] - maps[0].local_from_world[0][0] * -1e15) + ray.o_lo[0];
         assert!((total - 0.1 * maps[0].local_from_world[0][0]).abs() < 0.07, "{total}");
         assert_ne!(ray.o_lo[0], 0.0);

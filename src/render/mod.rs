@@ -6,8 +6,7 @@
 //! meet.
 
 mod assemble;
-pub mod ball;
-mod batch;
+pub mod batch;
 mod belt;
 pub mod bounds;
 pub mod bvh;

@@ -3,7 +3,7 @@
 use super::batch::{HitColumns, NONE, PADDING, RayBatch, load3};
 use super::bvh::{Leaves, Spread};
 use super::candidates::Candidates;
-use super::ray::{Line, Own};
+use super::ray::Own;
 use super::shape::{Mesh, Visit};
 use super::span::{least, stored};
 use super::way::Way;
@@ -24,16 +24,16 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
         let d = load3::<L>(&rays.d, g);
         let mut best = Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() };
         if AT_EYE {
-            let line = Line::new([L::zero(); 3], d);
             for &k in &candidates.ids {
-                best.test::<true>(world, k, line, None);
+                best.test::<true>(world, k, ([L::zero(); 3], d), None);
             }
             if candidates.tree {
-                best.through_tree(world, &Start::at_eye(line), way);
+                best.through_tree(world, &Start::at_eye(d), way);
             }
         } else {
             let start = Start {
-                line: Line::new(load3::<L>(&rays.o, g), d),
+                o: load3::<L>(&rays.o, g),
+                d,
                 primitive: L::load(&rays.source[g..]),
                 part: L::load(&rays.source_part[g..]),
                 outward: L::load(&rays.outward[g..]),
@@ -54,7 +54,8 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
 
 /// Rays and where they start.
 struct Start<R: Real> {
-    line: Line<R>,
+    o: [R; 3],
+    d: [R; 3],
     /// The primitive, or [`NONE`].
     primitive: R,
     part: R,
@@ -65,8 +66,15 @@ struct Start<R: Real> {
 }
 
 impl<R: Real> Start<R> {
-    fn at_eye(line: Line<R>) -> Start<R> {
-        Start { line, primitive: R::splat(NONE), part: R::zero(), outward: R::zero(), live: Mask::splat(true) }
+    fn at_eye(d: [R; 3]) -> Start<R> {
+        Start {
+            o: [R::zero(); 3],
+            d,
+            primitive: R::splat(NONE),
+            part: R::zero(),
+            outward: R::zero(),
+            live: Mask::splat(true),
+        }
     }
 }
 
@@ -82,7 +90,7 @@ struct Nearest<R> {
 impl<L: Lane> Nearest<L> {
     /// Tests surface `k`.
     #[inline(always)]
-    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, ray: Line<L>, own: Option<Own<L>>) {
+    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, ray: ([L; 3], [L; 3]), own: Option<Own<L>>) {
         self.current = L::splat(k as f64);
         world.crossings::<L, AT_EYE>(k, ray, own, self);
     }
@@ -106,7 +114,7 @@ impl<L: Lane> Nearest<L> {
                 continue;
             }
             let own = Own::of(here, start.part, outward);
-            self.test::<false>(world, k, start.line, own);
+            self.test::<false>(world, k, (start.o, start.d), own);
         }
     }
 
@@ -134,8 +142,8 @@ impl<L: Lane> Nearest<L> {
             || {
                 let t_max = L::select(start.live, self.t, -L::one());
                 world.bvh.traverse(
-                    start.line.o,
-                    start.line.d,
+                    start.o,
+                    start.d,
                     t_max,
                     #[inline(always)]
                     |k| {
@@ -153,8 +161,7 @@ impl<L: Lane> Nearest<L> {
         L::vectorize(
             #[inline(always)]
             || {
-                let (o, d) = (each3!(start.line.o, x => stored(x)), each3!(start.line.d, x => stored(x)));
-                let per_square = stored(start.line.per_square);
+                let (o, d) = (each3!(start.o, x => stored(x)), each3!(start.d, x => stored(x)));
                 let from = [stored(start.primitive), stored(start.part), stored(start.outward)];
                 let (mut t, mut id, mut part) = (stored(self.t), stored(self.id), stored(self.part));
                 let mut rest = start.live.bits();
@@ -163,11 +170,8 @@ impl<L: Lane> Nearest<L> {
                     rest &= rest - 1;
                     let one = |lanes: &[L::Elem; PADDING]| L::One::splat(lanes[i].to_f64());
                     let start = Start::<L::One> {
-                        line: Line {
-                            o: each3!(&o, x => one(x)),
-                            d: each3!(&d, x => one(x)),
-                            per_square: one(&per_square),
-                        },
+                        o: each3!(&o, x => one(x)),
+                        d: each3!(&d, x => one(x)),
                         primitive: one(&from[0]),
                         part: one(&from[1]),
                         outward: one(&from[2]),
@@ -176,11 +180,8 @@ impl<L: Lane> Nearest<L> {
                     let best = Nearest { t: one(&t), id: one(&id), part: one(&part), current: L::One::zero() };
                     let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&d, x => x[i].to_f64()));
                     let wide = Start::<L> {
-                        line: Line {
-                            o: each3!(&o, x => L::splat(x[i].to_f64())),
-                            d: each3!(&d, x => L::splat(x[i].to_f64())),
-                            per_square: L::splat(per_square[i].to_f64()),
-                        },
+                        o: each3!(&o, x => L::splat(x[i].to_f64())),
+                        d: each3!(&d, x => L::splat(x[i].to_f64())),
                         primitive: L::splat(from[0][i].to_f64()),
                         part: L::splat(from[1][i].to_f64()),
                         outward: L::splat(from[2][i].to_f64()),
@@ -227,7 +228,7 @@ impl<L: Lane> InTree<'_, L> {
     fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
         let ray = &self.wide;
         let mut met = Met { t: L::zero(), valid: L::Mask::splat(false) };
-        mesh.crossings_of_one(ids, (ray.line.o, ray.line.d), (ray.primitive, ray.part, ray.outward), &mut met);
+        mesh.crossings_of_one(ids, (ray.o, ray.d), (ray.primitive, ray.part, ray.outward), &mut met);
         let mut rest = (met.valid & L::zero().lt(met.t) & met.t.le(L::splat(least(self.best.t)))).bits();
         let t = stored(met.t);
         while rest != 0 {
@@ -255,11 +256,6 @@ impl<R: Real> Visit<R> for Met<R> {
 }
 
 impl<R: Real> Visit<R> for Nearest<R> {
-    #[inline(always)]
-    fn needs_further(&self, t: R, valid: R::Mask) -> bool {
-        (valid & !R::zero().lt(t)).any()
-    }
-
     #[inline(always)]
     fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
         let nearer = t.lt(self.t) | (t.same(self.t) & self.current.lt(self.id));

@@ -3,31 +3,6 @@
 use crate::math::real::{dot, each3, three};
 use crate::math::{Mask, Real};
 
-/// Rays in the world.
-#[derive(Clone, Copy, Debug)]
-pub struct Line<R> {
-    /// Origin.
-    pub o: [R; 3],
-    /// Direction, of any length but 0.
-    pub d: [R; 3],
-    /// One by the square of the direction's length, roughly: for what needs no exact number.
-    pub per_square: R,
-}
-
-impl<R: Real> Line<R> {
-    /// Rays from `o` along `d`.
-    #[inline(always)]
-    pub fn new(o: [R; 3], d: [R; 3]) -> Line<R> {
-        Line { o, d, per_square: R::one() / dot(d, d) }
-    }
-
-    /// Rays from `o` along `d` of unit length.
-    #[inline(always)]
-    pub fn unit(o: [R; 3], d: [R; 3]) -> Line<R> {
-        Line { o, d, per_square: R::one() }
-    }
-}
-
 /// A ray in a shape's own frame. `t` is the same number as in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalRay<R> {
@@ -39,18 +14,9 @@ pub struct LocalRay<R> {
     pub d: [R; 3],
     /// What `d` misses of the exact direction: over a long way even that much turns a ray aside visibly.
     pub d_lo: [R; 3],
-    /// One by the square of the direction's length, roughly.
-    pub per_square: R,
 }
 
 impl<R: Real> LocalRay<R> {
-    /// A ray whose numbers are exact.
-    #[inline(always)]
-    pub fn exact(o: [R; 3], d: [R; 3]) -> LocalRay<R> {
-        let nothing = [R::zero(); 3];
-        LocalRay { o, o_lo: nothing, d, d_lo: nothing, per_square: R::one() / dot(d, d) }
-    }
-
     /// The way along an axis to the coordinate `level`, rounded once: surfaces in one plane are met at one t, wherever their
     /// frames have their origins.
     #[inline(always)]
@@ -65,11 +31,11 @@ impl<R: Real> LocalRay<R> {
         three!(i => t.mul_add(self.d[i], self.o[i]) + t.mul_add(self.d_lo[i], self.o_lo[i]))
     }
 
-    /// The parameter of the line's point nearest to the frame's origin, or of one all but as near, and the line's point
-    /// [there](LocalRay::moved): from here a shape is judged as well as from near by, however far the ray starts.
+    /// The parameter of the line's point nearest to the frame's origin, rounded, and the line's point [there](LocalRay::moved):
+    /// from here a shape is judged as well as from near by, however far the ray starts.
     #[inline(always)]
     pub fn nearest(&self) -> (R, [R; 3]) {
-        let t0 = -(dot(self.o, self.d) * self.per_square);
+        let t0 = -(dot(self.o, self.d) / dot(self.d, self.d));
         (t0, each3!(self.moved(t0), m => m.0))
     }
 

@@ -4,7 +4,6 @@
 //! So the crossing at the light is taken out, as the one at the start is ([`Own`](super::ray::Own)).
 
 use super::bounds::{Bounds, larger};
-use super::ray::Line;
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Primitive, SIDE, Visit};
 use crate::math::Real;
@@ -25,7 +24,7 @@ pub fn lies_on(primitive: &Primitive, tables: Tables<'_>, point: [f64; 3]) -> bo
         let tri = &tables.triangles[i as usize];
         return lies_on_triangle(tri.v, tri.n, point);
     }
-    let p = primitive.frame.localize::<f64, false>(tables.maps, Line::unit(point, [0.0; 3])).o;
+    let p = primitive.frame.localize::<f64, false>(tables.maps, point, [0.0; 3]).o;
     let stretch = match primitive.frame.axes {
         super::frame::Axes::Cyclic(_) => 1.0,
         super::frame::Axes::Linear(m) => {
@@ -95,10 +94,6 @@ impl<R: Real, V: Visit<R>> Visit<R> for ButAtTheEnd<'_, R, V> {
         self.held = (R::select(nearer, t, t_held), R::select(nearer, part, part_held), held);
         let other = (R::select(nearer, t_held, t), R::select(nearer, part_held, part));
         self.inner.crossing(other.0, other.1, passed);
-    }
-    #[inline(always)]
-    fn needs_further(&self, t: R, valid: R::Mask) -> bool {
-        self.hold || self.inner.needs_further(t, valid)
     }
 }
 

@@ -4,7 +4,6 @@
 //! never changes a pixel: where two surfaces coincide exactly, the same one is always in front, and an opaque one before one
 //! that light goes through.
 
-use super::ball::passing_by;
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
@@ -13,11 +12,11 @@ use super::frame::LinearMap;
 use super::material::{Slot, Surfacing};
 use super::pattern::PatternTable;
 use super::place::Rescale;
-use super::ray::{Line, Own};
+use super::ray::Own;
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
 use super::touch::{lies_on, lies_on_triangle, neighbourhood};
-use crate::math::{Affine, Dd, Mask, Real};
+use crate::math::{Affine, Dd, Real};
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{MaterialId, NodeId};
 
@@ -119,7 +118,6 @@ impl World {
             let around = neighbourhood(light.at);
             let mut near: Vec<u32> = self.unbounded.iter().map(|p| p.id).collect();
             self.bvh.gather(
-                usize::MAX,
                 |b| b.overlaps(&around),
                 |id| {
                     near.push(id);
@@ -190,25 +188,21 @@ impl World {
         ids.iter().all(|id| own.contains(id)).then_some(mesh)
     }
 
-    /// Calls `visit` for every crossing of lines with surface `id` at t > 0, and for some behind; see [`Primitive::crossings`].
+    /// Calls `visit` for every crossing of lines with surface `id`; see [`Primitive::crossings`].
     #[inline(always)]
     pub(super) fn crossings<R: Real, const AT_EYE: bool>(
         &self,
         id: u32,
-        line: Line<R>,
+        (o, d): ([R; 3], [R; 3]),
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
         if let Some(primitive) = self.primitives.get(id as usize) {
-            let met = !passing_by::<R, AT_EYE>(primitive, &self.maps, &line);
-            if !met.any() {
-                return;
-            }
-            let visit = &mut Confined::new(met, self.confines(id), (line.o, line.d), visit);
-            return primitive.crossings::<R, AT_EYE>(self.tables(), line, own, visit);
+            let visit = &mut Confined::new(self.confines(id), (o, d), visit);
+            return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
         }
         let (mesh, k) = self.triangle(id);
-        mesh.crossing(k, (line.o, line.d), own, visit);
+        mesh.crossing(k, (o, d), own, visit);
     }
 
     /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.

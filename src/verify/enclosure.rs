@@ -8,7 +8,6 @@ use crate::math::real::Bool;
 use crate::math::tri::Tri;
 use crate::math::{Affine, Dd, Interval, Real};
 use crate::render::frame::Frame;
-use crate::render::ray::Line;
 use crate::render::shape::primitive::Tables;
 use crate::render::shape::{Kind, Primitive, Ring, TriangleData, Tube};
 use glam::DVec3;
@@ -170,9 +169,9 @@ fn kernel(case: u64) -> Found {
 
     let (mut enclosed, mut numbers) = (Vec::new(), Vec::new());
     let mut keep = |t: Interval, part: Interval, valid: Tri| enclosed.push((t, part, valid));
-    primitive.crossings::<Interval, false>(tables, Line::new(bo, bd), None, &mut keep);
+    primitive.crossings::<Interval, false>(tables, bo, bd, None, &mut keep);
     let mut keep = |t: f64, part: f64, valid: Bool| numbers.push((t, part, valid.0));
-    primitive.crossings::<f64, false>(tables, Line::new(o, d), None, &mut keep);
+    primitive.crossings::<f64, false>(tables, o, d, None, &mut keep);
 
     let say = |what: &str| Err(format!("{kind:?} in {frame:?}, ray {o:?} {d:?} in {bo:?} {bd:?}: {what}"));
     for &(t, part, valid) in &numbers {

@@ -4,7 +4,7 @@ use super::draw::unit;
 use crate::math::real::{Bool, minus};
 use crate::math::{Affine, Real};
 use crate::render::frame::{Frame, LinearMap};
-use crate::render::ray::{Line, Own};
+use crate::render::ray::Own;
 use crate::render::shape::primitive::{Surface, Tables};
 use crate::render::shape::{Kind, Primitive, TriangleData, Visit};
 
@@ -78,7 +78,7 @@ impl Specimen {
 
     /// The crossings as the kernel shows them.
     pub fn visit<R: Real>(&self, o: [R; 3], d: [R; 3], own: Option<Own<R>>, visit: &mut impl Visit<R>) {
-        self.primitive.crossings::<R, false>(self.tables(), Line::new(o, d), own, visit);
+        self.primitive.crossings::<R, false>(self.tables(), o, d, own, visit);
     }
 
     /// The crossings of a ray: those at t > 0.

@@ -10,7 +10,6 @@ use crate::diag::{FileId, Place, Span};
 use crate::math::Affine;
 use crate::math::real::{Bool, axpy, minus};
 use crate::render::World;
-use crate::render::ray::Line;
 use crate::scene::{Camera, Node, NodeId, NodeKind, Scene, Shape};
 use glam::DVec3;
 
@@ -78,7 +77,7 @@ impl Nearest {
             }
         };
         let (primitives, tables) = (world.primitives(), world.tables());
-        primitives[id as usize].crossings::<f64, false>(tables, Line::new(o, d), None, &mut keep);
+        primitives[id as usize].crossings::<f64, false>(tables, o, d, None, &mut keep);
     }
 }
 

@@ -3,7 +3,7 @@
 use rtdsl::math::Affine;
 use rtdsl::math::real::Bool;
 use rtdsl::render::frame::Frame;
-use rtdsl::render::ray::{Line, Own};
+use rtdsl::render::ray::Own;
 use rtdsl::render::shape::primitive::Tables;
 use rtdsl::render::shape::{Kind, Primitive, Ring, TriangleData, Tube};
 
@@ -40,7 +40,7 @@ fn each_kernel(o: [f64; 3], d: [f64; 3], check: impl Fn(&str, Vec<f64>)) {
             let tables = Tables { maps: &maps, triangles: &triangles };
             for own in [None, Some(Own { here: Bool(true), part: 0.0, outward: Bool(true) })] {
                 let mut met = Vec::new();
-                primitive.crossings::<f64, false>(tables, Line::new(o, d), own, &mut |t: f64, _: f64, valid: Bool| {
+                primitive.crossings::<f64, false>(tables, o, d, own, &mut |t: f64, _: f64, valid: Bool| {
                     // As every caller asks.
                     if valid.0 && 0.0 < t && t < f64::INFINITY {
                         met.push(t);

@@ -1,7 +1,7 @@
 //! The box: the overlap of three slabs around its centre.
 
 use super::{Point, Visit};
-use crate::math::{Mask, Real};
+use crate::math::Real;
 use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// Parts are numbered 2·axis for the lower face, 2·axis + 1 for the upper one.
@@ -31,18 +31,6 @@ pub(super) fn crossings<R: Real>(half: [f64; 3], ray: &LocalRay<R>, own: Option<
         leave = Wall::select(!level & second.tau.lt(leave.tau), second, leave);
     }
     let crosses = inside & enter.tau.le(leave.tau);
-    if own.is_none() {
-        if !crosses.any() {
-            return; // the line passes by
-        }
-        let t_in = enter.to / enter.d;
-        visit.crossing(t_in, enter.part, crosses);
-        if visit.needs_further(t_in, crosses) {
-            // Of an edge, rounding may put the way out before the way in; then whether it was asked for must not matter.
-            visit.crossing((leave.to / leave.d).max(t_in), leave.part, crosses);
-        }
-        return;
-    }
     let (way_in, t_out, way_out) = convex_exit(&own, crosses, leave.to / leave.d, crosses);
     visit.crossing(enter.to / enter.d, enter.part, way_in);
     visit.crossing(t_out, leave.part, way_out);
@@ -93,7 +81,7 @@ mod tests {
         let mut out = Vec::new();
         crossings(
             [1.0, 2.0, 3.0],
-            &LocalRay::exact(o, d),
+            &LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] },
             None,
             &mut |t: f64, part: f64, ok: crate::math::real::Bool| {
                 if ok.0 {

@@ -32,14 +32,6 @@ pub const TOP: f64 = 2.0;
 pub trait Visit<R: Real> {
     /// A crossing at `t`, on `part`, in the lanes of `valid`; elsewhere the numbers mean nothing.
     fn crossing(&mut self, t: R, part: R, valid: R::Mask);
-
-    /// Whether a crossing further on may matter, when one at `t` was found in the lanes of `valid`. Where none does, kernels save
-    /// its root.
-    #[inline(always)]
-    fn needs_further(&self, t: R, valid: R::Mask) -> bool {
-        let _ = (t, valid);
-        true
-    }
 }
 
 impl<R: Real, F: FnMut(R, R, R::Mask)> Visit<R> for F {

@@ -5,7 +5,7 @@ use super::{Ring, TriangleData, Tube, Visit, cuboid, flat, sphere, torus, triang
 use crate::math::Real;
 use crate::math::real::{dot, each3, scaled, splat3};
 use crate::render::frame::{Frame, LinearMap};
-use crate::render::ray::{Line, Own};
+use crate::render::ray::Own;
 
 /// A surface of the world.
 #[derive(Clone, Copy, Debug)]
@@ -93,20 +93,21 @@ impl Primitive {
     /// [`space`](Primitive::space) of a primitive without patterns.
     pub const NO_SPACE: u32 = u32::MAX;
 
-    /// Calls `visit(t, part, valid)` for every crossing of the line, behind the origin too.
+    /// Calls `visit(t, part, valid)` for every crossing of the line through `o` along `d`, behind the origin too.
     #[inline(always)]
     pub fn crossings<R: Real, const AT_EYE: bool>(
         &self,
         tables: Tables<'_>,
-        line: Line<R>,
+        o: [R; 3],
+        d: [R; 3],
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
         if let Kind::Triangle(i) = self.kind {
             let v = each3!(tables.triangles[i as usize].v, v => splat3(v));
-            return triangle::crossing(v, line.o, line.d, own, visit);
+            return triangle::crossing(v, o, d, own, visit);
         }
-        let ray = self.frame.localize::<R, AT_EYE>(tables.maps, line);
+        let ray = self.frame.localize::<R, AT_EYE>(tables.maps, o, d);
         match &self.kind {
             Kind::Sphere(r) => sphere::crossings(*r, &ray, own, visit),
             Kind::Plane => flat::plane_crossing(&ray, own, visit),
@@ -133,7 +134,7 @@ impl Primitive {
             let shading = tri.shading.map(|s| each3!(s, n => splat3(n)));
             return triangle::surface(Sides { v: each3!(tri.v, v => splat3(v)), n: splat3(tri.n), shading }, o, d);
         }
-        let p = self.frame.localize::<R, AT_EYE>(tables.maps, Line::unit(o, d)).at(t); // no length is asked for
+        let p = self.frame.localize::<R, AT_EYE>(tables.maps, o, d).at(t);
         let point = match &self.kind {
             Kind::Sphere(r) => sphere::point(*r, p),
             Kind::Plane | Kind::Disc { .. } | Kind::Triangle(_) | Kind::Mesh(_) => flat::point(p),

@@ -72,16 +72,9 @@ pub struct Roots<R: Real> {
 const DOUBT: f64 = (1 << 12) as f64;
 
 /// Solves for the crossings of `ray`'s line with `form` = 0 from its point `m` at `t0`, which is near the shape. Of rays that
-/// start on the quadric itself, the lanes of `own`, one root is exactly 0. The larger root may be left at infinity where
-/// `needs_further` says, of the t of the smaller ones and where they are real, that it isn't needed.
+/// start on the quadric itself, the lanes of `own`, one root is exactly 0.
 #[inline(always)]
-pub fn roots<R: Real>(
-    ray: &LocalRay<R>,
-    (t0, m): (R, [R; 3]),
-    form: &impl Quadric,
-    own: Option<R::Mask>,
-    needs_further: impl FnOnce(R, R::Mask) -> bool,
-) -> Roots<R> {
+pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadric, own: Option<R::Mask>) -> Roots<R> {
     let (zero, d) = (R::zero(), ray.d);
     let Coefficients { a, b, c, sizes } = form.coefficients(m, d);
     let disc = b.difference_of_products(b, a, c);
@@ -96,30 +89,21 @@ pub fn roots<R: Real>(
         let always_inside = constant & c.le(zero);
         return Roots { lo: Crossing::never(-1.0), hi: Crossing::never(1.0), real, a, always_inside };
     }
-    let pair = Pair::new(a, b, c, disc);
-    let x = pair.smaller();
-    let (mut lo, mut hi) = (Crossing { tau: x, t: t0 + x }, Crossing::never(1.0));
-    // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
-    // numbers, of which the sign says nothing.
-    let (eight, shift) = (R::splat(8.0), t0.abs());
-    let near = |t: R| real & (t.abs() * eight).lt(shift);
-    if starts_here || near(lo.t).any() || needs_further(lo.t, real) {
-        let y = pair.larger();
-        // Of two that are all but one, rounding may exchange them.
-        let (x, y) = (x.min(y), x.max(y));
-        (lo, hi) = (Crossing { tau: x, t: t0 + x }, Crossing { tau: y, t: t0 + y });
-    }
+    let (x, y) = pair(a, b, c, disc);
+    let (mut lo, mut hi) = (Crossing { tau: x, t: t0 + x }, Crossing { tau: y, t: t0 + y });
     let mut found = Roots { lo, hi, real, a, always_inside: constant & c.le(zero) };
 
-    // Such rays start near the surface, where the coefficients at the ray's own origin are the good ones. An eighth loses at
-    // most three of 53 bits.
-    let (near_lo, near_hi) = (near(lo.t), near(hi.t));
+    // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
+    // numbers. Such rays start near the surface, where the coefficients at the ray's own origin are the good ones. An
+    // eighth loses at most three of 53 bits.
+    let (eight, shift) = (R::splat(8.0), t0.abs());
+    let near_lo = real & (lo.t.abs() * eight).lt(shift);
+    let near_hi = real & (hi.t.abs() * eight).lt(shift);
     if (near_lo | near_hi).any() {
         let k = form.coefficients(ray.o, d);
-        let pair = Pair::new(k.a, k.b, k.c, k.b.difference_of_products(k.b, k.a, k.c));
-        let (x, y) = (pair.smaller(), pair.larger());
-        lo.t = R::select(near_lo, x.min(y), lo.t);
-        hi.t = R::select(near_hi, x.max(y), hi.t);
+        let (x, y) = pair(k.a, k.b, k.c, k.b.difference_of_products(k.b, k.a, k.c));
+        lo.t = R::select(near_lo, x, lo.t);
+        hi.t = R::select(near_hi, y, hi.t);
         (found.lo, found.hi) = (lo, hi);
     }
     if doubt.any() {
@@ -131,56 +115,29 @@ pub fn roots<R: Real>(
     found
 }
 
-/// The two roots of a·τ² + 2·b·τ + c: q/a and c/q, with the q of which no digits cancel. Infinite ones where a = 0.
-struct Pair<R: Real> {
-    a: R,
-    c: R,
-    q: R,
-    /// Where q/a, which lies further from 0, is the smaller one.
-    first: R::Mask,
-}
-
-impl<R: Real> Pair<R> {
-    #[inline(always)]
-    fn new(a: R, b: R, c: R, disc: R) -> Pair<R> {
-        let zero = R::zero();
-        let q = -(b + R::select(zero.lt(disc), disc, zero).sqrt().copysign(b));
-        let (down, falling) = (q.lt(zero), a.lt(zero));
-        Pair { a, c, q, first: (down & !falling) | (!down & falling) }
-    }
-
-    #[inline(always)]
-    fn smaller(&self) -> R {
-        self.root(self.first)
-    }
-
-    #[inline(always)]
-    fn larger(&self) -> R {
-        self.root(!self.first)
-    }
-
-    /// q/a in the lanes of `by_a`, c/q elsewhere.
-    #[inline(always)]
-    fn root(&self, by_a: R::Mask) -> R {
-        let root = R::select(by_a, self.q, self.c) / R::select(by_a, self.a, self.q);
-        let double = !by_a & self.q.same(R::zero()); // at 0: c is 0 too
-        R::select(double, R::zero(), root)
-    }
+/// The two roots of a·τ² + 2·b·τ + c, in order; an infinite one where a = 0.
+#[inline(always)]
+fn pair<R: Real>(a: R, b: R, c: R, disc: R) -> (R, R) {
+    let zero = R::zero();
+    let q = -(b + R::select(zero.lt(disc), disc, zero).sqrt().copysign(b));
+    let x = q / a;
+    let y = R::select(q.same(zero), zero, c / q); // a double root at 0: c is 0 too
+    (x.min(y), x.max(y))
 }
 
 /// The same roots from the ray's exact origin in a finer scalar, in the lanes of `doubt`.
 #[inline(always)]
 fn judged_again<R: Real>(ray: &LocalRay<R>, t0: R, form: &impl Quadric, doubt: R::Mask, rough: Roots<R>) -> Roots<R> {
-    let LocalRay { o, o_lo, d, d_lo, .. } = *ray;
+    let LocalRay { o, o_lo, d, d_lo } = *ray;
     let (l, e) = (o_lo, d_lo);
     let given = [o[0], o[1], o[2], l[0], l[1], l[2], d[0], d[1], d[2], e[0], e[1], e[2], t0];
     let (one, zero) = (R::one(), R::zero());
     let real = R::select(rough.real, one, zero);
     let rough_numbers = [rough.lo.tau, rough.lo.t, rough.hi.tau, rough.hi.t, real];
     let [lo_tau, lo_t, hi_tau, hi_t, real] = R::again(doubt, given, rough_numbers, |v| {
-        let whole = |k: usize| three!(i => v[k + i] + v[k + 3 + i]);
-        let exact = LocalRay::exact(whole(0), whole(6));
-        let x = roots(&exact, exact.nearest(), form, None, |_, _| true);
+        let (whole, nothing) = (|k: usize| three!(i => v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
+        let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
+        let x = roots(&exact, exact.nearest(), form, None);
         let real = Real::select(x.real, Real::one(), Real::zero());
         [x.lo.t - v[12], x.lo.t, x.hi.t - v[12], x.hi.t, real]
     });
@@ -222,12 +179,12 @@ mod tests {
     use crate::render::shape::sphere::Ball;
 
     fn ray(o: [f64; 3], d: [f64; 3]) -> LocalRay<f64> {
-        LocalRay::exact(o, d)
+        LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] }
     }
 
     /// With the unit sphere.
     fn of(ray: &LocalRay<f64>) -> Roots<f64> {
-        roots(ray, ray.nearest(), &Ball { r: 1.0 }, None, |_, _| true)
+        roots(ray, ray.nearest(), &Ball { r: 1.0 }, None)
     }
 
     #[test]

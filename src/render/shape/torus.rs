@@ -38,7 +38,7 @@ pub(super) fn crossings<R: Real>(ring: &Ring, ray: &LocalRay<R>, own: Option<Own
         Some(own) => R::select(own.here, R::select(own.outward, one, -one), zero),
         None => zero,
     };
-    let LocalRay { o, o_lo: lo, d, d_lo: e, .. } = *ray;
+    let LocalRay { o, o_lo: lo, d, d_lo: e } = *ray;
     let given = [o[0], o[1], o[2], lo[0], lo[1], lo[2], d[0], d[1], d[2], e[0], e[1], e[2], leaves];
     let found = R::each(
         given,
@@ -73,8 +73,7 @@ fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
     // The direction is brought to unit magnitude, too: its length is the world's, and its fourth power is needed.
     let longest = larger(d[0].magnitude(), larger(d[1].magnitude(), d[2].magnitude()));
     let k = S::splat(reciprocal_power(longest));
-    let d = each3!(d, x => x * k);
-    let ray = LocalRay { o: at(0), o_lo: at(3), d, d_lo: each3!(at(9), x => x * k), per_square: S::one() / dot(d, d) };
+    let ray = LocalRay { o: at(0), o_lo: at(3), d: each3!(d, x => x * k), d_lo: each3!(at(9), x => x * k) };
     if !v[12].same(S::zero()).any() {
         let mut found = numbers(roots_from(ring, &ray, v[12]), k);
         if v[12].lt(S::zero()).any() {
@@ -86,11 +85,11 @@ fn ring_crossings<S: Single>(ring: &Ring, v: [S; 13]) -> [S; 8] {
         return found;
     }
     let (found, doubt) = ring_roots(ring, &ray);
-    let LocalRay { o, o_lo: l, d, d_lo: e, .. } = ray;
+    let LocalRay { o, o_lo: l, d, d_lo: e } = ray;
     let given = [o[0], o[1], o[2], l[0], l[1], l[2], d[0], d[1], d[2], e[0], e[1], e[2], k];
     S::again(doubt, given, numbers(found, k), |w| {
-        let whole = |i: usize| three!(k => w[i + k] + w[i + 3 + k]);
-        let exact = LocalRay::exact(whole(0), whole(6));
+        let (whole, nothing) = (|i: usize| three!(k => w[i + k] + w[i + 3 + k]), [Real::zero(); 3]);
+        let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
         numbers(ring_roots(ring, &exact).0, w[12])
     })
 }
@@ -338,7 +337,7 @@ mod tests {
     const RING: Ring = Ring { r: 1.0, tube: 0.25, scale: 1.0 };
 
     fn roots(ring: &Ring, o: [f64; 3], d: [f64; 3]) -> Vec<f64> {
-        let found = ring_roots(ring, &LocalRay::exact(o, d)).0;
+        let found = ring_roots(ring, &LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] }).0;
         found.into_iter().filter(|x| x.1 == 1.0).map(|x| x.0).collect()
     }
 

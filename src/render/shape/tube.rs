@@ -53,8 +53,7 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let up = zero.lt(dy);
     let level = dy.same(zero);
     let level_inside = to_bottom.le(zero) & zero.le(to_top);
-    let per_height = R::one() / dy;
-    let (t_bottom, t_top) = (to_bottom * per_height, to_top * per_height); // where to look from: roughly is enough
+    let (t_bottom, t_top) = (to_bottom / dy, to_top / dy);
     // Seen from the line's point nearest to the axis, but between the planes: however slim the shape is, that point is as near
     // to where it is crossed as the shape is wide. From the point nearest to the frame's origin, a slim shape's two sides
     // are a small difference of large numbers.
@@ -62,55 +61,42 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let within = t_axis.min(t_bottom.max(t_top)).max(t_bottom.min(t_top));
     let t0 = R::select(level, t_axis, within);
     let from = ray.moved(t0);
-    let near = (t0, each3!(from, m => m.0));
-    let x = roots(
-        ray,
-        near,
-        tube,
-        on_side(&own, SIDE),
-        #[inline(always)]
-        |_, _| true,
-    );
+    let x = roots(ray, (t0, each3!(from, m => m.0)), tube, on_side(&own, SIDE));
     if !(x.real | x.always_inside).any() && own.is_none() {
         return; // the line passes by
     }
     let (m, m_lo) = from[1];
+    let at_bottom = Crossing { tau: ((bottom - m) - m_lo) / dy, t: t_bottom };
+    let at_top = Crossing { tau: ((top - m) - m_lo) / dy, t: t_top };
     let (before_all, after_all) = (Crossing::never(-1.0), Crossing::never(1.0));
-    let (tau_bottom, tau_top) = (((bottom - m) - m_lo) * per_height, ((top - m) - m_lo) * per_height);
-    let slab_in = R::select(level, before_all.tau, R::select(up, tau_bottom, tau_top));
-    let slab_out = R::select(level, after_all.tau, R::select(up, tau_top, tau_bottom));
+    let slab_in = Crossing::select(level, before_all, Crossing::select(up, at_bottom, at_top));
+    let slab_out = Crossing::select(level, after_all, Crossing::select(up, at_top, at_bottom));
 
     // Inside the quadric: between the roots, or, where the form falls off in both directions, on the half-line that lies
     // on our side of the apex: the one that overlaps the slab.
     let steep = x.a.lt(zero);
-    let before = (slab_out - x.hi.tau).lt(x.lo.tau - slab_in);
+    let before = (slab_out.tau - x.hi.tau).lt(x.lo.tau - slab_in.tau);
     let side_in = Crossing::select(steep, Crossing::select(before, before_all, x.hi), x.lo);
     let side_out = Crossing::select(steep, Crossing::select(before, x.lo, after_all), x.hi);
     let side_in = Crossing::select(x.always_inside, before_all, side_in);
     let side_out = Crossing::select(x.always_inside, after_all, side_out);
 
-    let in_by_side = slab_in.le(side_in.tau);
-    let out_by_side = side_out.tau.le(slab_out);
-    let enter = R::select(in_by_side, side_in.tau, slab_in);
-    let leave = R::select(out_by_side, side_out.tau, slab_out);
-    let crosses = (x.real | x.always_inside) & enter.le(leave) & (!level | level_inside);
+    let in_by_side = slab_in.tau.le(side_in.tau);
+    let out_by_side = side_out.tau.le(slab_out.tau);
+    let enter = Crossing::select(in_by_side, side_in, slab_in);
+    let leave = Crossing::select(out_by_side, side_out, slab_out);
+    let crosses = (x.real | x.always_inside) & enter.tau.le(leave.tau) & (!level | level_inside);
 
     let (side, low, high) = (R::splat(SIDE), R::splat(BOTTOM), R::splat(TOP));
     let part_in = R::select(in_by_side, side, R::select(up, low, high));
     let part_out = R::select(out_by_side, side, R::select(up, high, low));
-    let (mut t_in, mut t_out) = (side_in.t, side_out.t);
-    if tube.caps && (crosses & !(in_by_side & out_by_side)).any() {
-        // Only now to the last bit.
-        t_in = R::select(in_by_side, t_in, R::select(level, before_all.t, R::select(up, to_bottom, to_top) / dy));
-        t_out = R::select(out_by_side, t_out, R::select(level, after_all.t, R::select(up, to_top, to_bottom) / dy));
-    }
-    let t_out = R::select(crosses, t_out, zero); // of a ray that starts on it, but seems beside it: the nearest
+    let t_out = R::select(crosses, leave.t, zero); // of a ray that starts on it, but seems beside it: the nearest
     let (mut way_in, t_out, mut way_out) = convex_exit(&own, crosses, t_out, crosses);
     if !tube.caps {
         way_in = way_in & in_by_side;
         way_out = way_out & out_by_side;
     }
-    visit.crossing(t_in, part_in, way_in);
+    visit.crossing(enter.t, part_in, way_in);
     visit.crossing(t_out, part_out, way_out);
 }
 
@@ -151,7 +137,7 @@ mod tests {
 
     fn hits(tube: &Tube, o: [f64; 3], d: [f64; 3]) -> Vec<(f64, f64)> {
         let mut out = Vec::new();
-        let ray = LocalRay::exact(o, d);
+        let ray = LocalRay { o, o_lo: [0.0; 3], d, d_lo: [0.0; 3] };
         crossings(tube, &ray, None, &mut |t: f64, part: f64, ok: Bool| {
             if ok.0 && t > 0.0 {
                 out.push((t, part));
@@ -186,7 +172,7 @@ mod tests {
     #[test]
     fn own_crossing_is_taken_out() {
         let o = [1.0, 1.0, 0.0];
-        let ray = LocalRay::exact(o, [-1.0, 0.0, 0.0]);
+        let ray = LocalRay { o, o_lo: [0.0; 3], d: [-1.0, 0.0, 0.0], d_lo: [0.0; 3] };
         let mut left = Vec::new();
         let own = Own { here: Bool(true), part: SIDE, outward: Bool(false) };
         crossings(&CAN, &ray, Some(own), &mut |t: f64, _: f64, ok: Bool| {
