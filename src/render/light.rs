@@ -192,21 +192,17 @@ impl<L: Lane> Open<'_, L> {
     #[inline(always)]
     fn through_tree(&mut self, world: &World, scratch: &mut Shadow, recorder: &mut Recorder) {
         let Shadow { transparent, ways, deep, .. } = scratch;
-        let way = &mut ways[*deep as usize];
-        if Way::is_free::<L>() && way.is_due() {
-            let before = self.mask;
-            way.try_both(|together| {
+        let before = self.mask;
+        ways[*deep as usize].take::<L>(
+            #[inline(always)]
+            |together| {
                 self.mask = before;
                 match together {
                     true => self.together(world, transparent, recorder),
                     false => self.one_by_one(world, transparent, recorder),
                 }
-            });
-        } else if Way::is_free::<L>() && way.is_together() {
-            self.together(world, transparent, recorder);
-        } else {
-            self.one_by_one(world, transparent, recorder);
-        }
+            },
+        );
         // Each of the rays may have put the same aside.
         transparent.sort_unstable();
         transparent.dedup();

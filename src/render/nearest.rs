@@ -121,17 +121,14 @@ impl<L: Lane> Nearest<L> {
     /// Goes through the tree the better way.
     #[inline(always)]
     fn through_tree(&mut self, world: &World, start: &Start<L>, way: &mut Way) {
-        if Way::is_free::<L>() && way.is_due() {
-            let before = *self;
-            way.try_both(|together| {
+        let before = *self;
+        way.take::<L>(
+            #[inline(always)]
+            |together| {
                 *self = before;
                 if together { self.together(world, start) } else { self.one_by_one(world, start) }
-            });
-        } else if Way::is_free::<L>() && way.is_together() {
-            self.together(world, start);
-        } else {
-            self.one_by_one(world, start);
-        }
+            },
+        );
     }
 
     /// All rays at once.

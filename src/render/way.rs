@@ -19,10 +19,6 @@ pub struct Way {
     trials: u32,
 }
 
-/// Not yet: in 5 of 100,000 strange scenes (`rtdsl verify --only strange --extremes`), flat ones and tiny ones, rays together found something
-/// else than rays alone. Until that is mended all go alone, which costs scenes of many large shapes up to four times the time.
-const BOTH_FIND_THE_SAME: bool = true;
-
 /// Registers of rays between two trials: a trial costs a few per cent of what it decides on.
 const PERIOD: u32 = 40;
 /// Trials in a row at first.
@@ -32,37 +28,39 @@ const AT_FIRST: u32 = 4;
 const FADING: f64 = 7.0 / 8.0;
 
 impl Way {
-    /// Whether there is a choice.
+    /// Has `go` send a register of rays on its way: it is told whether together. Where both ways are tried it is called twice, and
+    /// has to begin anew.
+    ///
+    /// `go` is called from one place of the code only, so that the tree's walk is compiled once, and inside the caller, which is where
+    /// the registers' instructions may be used.
     #[inline(always)]
-    pub fn is_free<L: Lane>() -> bool {
-        L::WIDTH > 1 && BOTH_FIND_THE_SAME
+    pub fn take<L: Lane>(&mut self, mut go: impl FnMut(bool)) {
+        if L::WIDTH == 1 {
+            return go(false); // there is no choice
+        }
+        let tries = self.is_due();
+        // In turn the one and the other first: the second finds in the caches what the first has read.
+        let first = if tries { self.trials & 1 == 0 } else { self.together < self.alone };
+        let mut together = first;
+        loop {
+            let start = tries.then(Instant::now);
+            go(together);
+            let Some(start) = start else { return };
+            let spent = if together { &mut self.together } else { &mut self.alone };
+            *spent = FADING * *spent + start.elapsed().as_secs_f64();
+            together = !together;
+            if together == first {
+                return;
+            }
+        }
     }
 
     /// Whether both shall be tried with these rays; often at first.
     #[inline(always)]
-    pub fn is_due(&mut self) -> bool {
+    fn is_due(&mut self) -> bool {
         let due = self.left == 0;
-        self.left = if due { if self.trials < AT_FIRST { 1 } else { PERIOD } } else { self.left - 1 };
+        self.trials += due as u32;
+        self.left = if due { if self.trials <= AT_FIRST { 1 } else { PERIOD } } else { self.left - 1 };
         due
-    }
-
-    /// Tries both, in turn the one and the other first: the second finds in the caches what the first has read.
-    pub fn try_both(&mut self, mut go: impl FnMut(bool)) {
-        self.trials = self.trials.wrapping_add(1);
-        let first = self.trials & 1 == 0;
-        let start = Instant::now();
-        go(first);
-        let middle = Instant::now();
-        go(!first);
-        let (one, other) = (middle - start, middle.elapsed());
-        let (together, alone) = if first { (one, other) } else { (other, one) };
-        self.together = FADING * self.together + together.as_secs_f64();
-        self.alone = FADING * self.alone + alone.as_secs_f64();
-    }
-
-    /// Whether rays shall go together.
-    #[inline(always)]
-    pub fn is_together(self) -> bool {
-        self.together < self.alone
     }
 }

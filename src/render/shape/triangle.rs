@@ -145,7 +145,10 @@ pub fn surface<R: Real>(tri: Sides<R>, o: [R; 3], d: [R; 3]) -> Surface<R> {
         let (e1, e2) = (along[i].abs(), across[i].abs());
         u5 * b.mul_add(e1, c.mul_add(e2, v[0][i].abs())) + u6 * (e1 + e2)
     });
-    let ns = shading.map_or(n, |s| shading_normal(s, (beta, gamma), n));
+    let ns = match shading {
+        Some(s) => shading_normal(s, (beta, gamma), n),
+        None => n,
+    };
     Surface { p, n, ns, offset: dot(each3!(n, x => x.abs()), error), local: [beta, R::zero(), gamma] }
 }
 
