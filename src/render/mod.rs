@@ -13,6 +13,7 @@ pub mod bvh;
 pub mod camera;
 mod candidates;
 mod census;
+pub mod certify;
 mod confine;
 mod crew;
 pub mod cull;
