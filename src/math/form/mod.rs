@@ -41,6 +41,7 @@ const RECIPROCAL_ROOT: u8 = 5;
 const POWER: u8 = 6;
 const KINK: u8 = 7;
 const HULL: u8 = 8;
+const ARCSINE: u8 = 9;
 
 /// Unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
@@ -50,7 +51,7 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 impl<const MUTANT: u8> Form<MUTANT> {
     /// How many mutants there are.
-    pub const MUTANTS: u8 = 2 * HULL;
+    pub const MUTANTS: u8 = 2 * ARCSINE;
     /// Nothing is known.
     pub const ALL: Self = Form { c: 0.0, x: 0.0, y: 0.0, r: f64::INFINITY };
 
@@ -223,6 +224,28 @@ impl<const MUTANT: u8> Form<MUTANT> {
         let base = f - m * c;
         let curved = self.line(POWER, m, (base, base + most), off * (f + 4.0 * m * (c + reach) + 2.0 * most));
         if curved.r < flat.r { curved } else { flat }
+    }
+
+    /// arcsin self, by its tangent in the middle and Taylor's remainder: the second derivative, x/(1 − x²)^(3/2), grows with x.
+    /// Nothing is known where values may reach ±1.
+    pub fn arcsine(self) -> Self {
+        let (lo, hi) = (self.lo(), self.hi());
+        if !(lo > -1.0 && hi < 1.0) {
+            return Self::ALL;
+        }
+        let cosine = |x: f64| ((1.0 - x) * (1.0 + x)).sqrt();
+        let bend = |x: f64| {
+            let k = cosine(x);
+            0.5 * x / (k * k * k)
+        };
+        let (f, m) = (super::fun::asin(self.c), 1.0 / cosine(self.c));
+        let square = self.radius() * self.radius();
+        let (least, most) = (bend(lo) * square, bend(hi) * square);
+        let (least, most) = (if least < 0.0 { least } else { 0.0 }, if most > 0.0 { most } else { 0.0 });
+        let base = f - m * self.c;
+        // The function's last bit, and that of the slope all the way to the ends.
+        let rounded = 2.0 * f.abs() + 6.0 * m * (self.c.abs() + self.radius()) + 12.0 * (most - least);
+        self.line(ARCSINE, m, (base + least, base + most), rounded)
     }
 
     /// One that holds both.

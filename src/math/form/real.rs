@@ -67,7 +67,9 @@ impl<const MUTANT: u8> Mul for Form<MUTANT> {
         let (la, lb) = (self.x.abs() + self.y.abs(), o.x.abs() + o.y.abs());
         let squares = 0.5 * (xx.abs() + yy.abs());
         let remainder = squares + (xy + yx).abs() + (ca + la) * o.r + (cb + lb) * self.r + self.r * o.r;
-        let sizes = 4.0 * (cc.abs() + squares) + 3.0 * (cx.abs() + xc.abs() + cy.abs() + yc.abs()) + 2.0 * (xy.abs() + yx.abs());
+        let sizes = 4.0 * (cc.abs() + squares)
+            + 3.0 * (cx.abs() + xc.abs() + cy.abs() + yc.abs())
+            + 2.0 * (xy.abs() + yx.abs());
         Self::made(PRODUCT, [cc + 0.5 * (xx + yy), cx + xc, cy + yc], remainder, sizes)
     }
 }

@@ -101,7 +101,9 @@ fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> Vec<[Span; 3]>
     };
     let onward = |m: &Surfacing, c: usize| magnitude(slot(m.reflect, c)) + magnitude(slot(m.transmit, c));
     let negative = |m: &Surfacing| {
-        [m.color, m.ambient, m.diffuse, m.specular, m.reflect, m.transmit].iter().any(|s| (0..3).any(|c| slot(*s, c)[0] < 0.0))
+        [m.color, m.ambient, m.diffuse, m.specular, m.reflect, m.transmit]
+            .iter()
+            .any(|s| (0..3).any(|c| slot(*s, c)[0] < 0.0))
     };
     let most = |f: &dyn Fn(&Surfacing) -> f64| world.materials.iter().fold(0.0, |m, x| larger(m, f(x)));
     let any_negative = world.materials.iter().any(negative)

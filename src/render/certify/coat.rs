@@ -3,13 +3,17 @@
 use super::super::material::Slot;
 use super::super::pattern::{PatternNode, Rows};
 use super::super::surface_pattern::PatternFrame;
+use super::super::texture::Edge;
 use super::bound::Bound;
 use super::lit::Shade;
 use super::met::Met;
-use super::polygon::Polygon;
+use super::polygon::{AREA_ERROR, Polygon};
 use super::study::Study;
-use crate::math::real::{Real, three};
+use super::texels::Texels;
+use super::waves::{Parity, parity};
 use crate::math::Form;
+use crate::math::real::{Real, dot, three};
+use crate::scene::{Filter, Mapping};
 
 /// Most lines of one pattern through a polygon that it is cut at.
 const MOST_LINES: i64 = 24;
@@ -34,7 +38,7 @@ pub struct Coordinate {
     pub fixed: Option<f64>,
 }
 
-impl Spot<'_> {
+impl<'s> Spot<'s> {
     /// The point brought to another space.
     fn apply(rows: &Rows, p: [Coordinate; 3], w: Form) -> [Coordinate; 3] {
         rows.map(|[x, y, z, shift]| {
@@ -48,7 +52,7 @@ impl Spot<'_> {
         })
     }
 
-    fn within(&self, p: [Coordinate; 3]) -> Spot<'_> {
+    fn within(&self, p: [Coordinate; 3]) -> Spot<'s> {
         Spot { p, local: self.local, w: self.w, spaces: self.spaces }
     }
 
@@ -82,7 +86,72 @@ impl<'c> Study<'c> {
             Some(first) => spot.from_local(first),
             None => return self.unknown(p),
         };
-        self.coloured(p, id, &spot.within(at), &mut |_, q, color| Bound::of(q, mix(color)))
+        let (id, at) = self.unwrapped(id, spot.within(at));
+        if let Some(bound) = self.whole(p, (id, &at), met, shade) {
+            return bound;
+        }
+        self.coloured(p, id, &at, &mut |_, q, color| Bound::of(q, mix(color)))
+    }
+
+    /// What stands in a space, in that space.
+    fn unwrapped<'s>(&self, mut id: u32, mut at: Spot<'s>) -> (u32, Spot<'s>) {
+        loop {
+            (id, at) = match &self.scene.world.patterns.nodes[id as usize] {
+                PatternNode::InSpace(child, space) => {
+                    let p = at.from_local(&at.spaces[*space as usize]);
+                    (*child, at.within(p))
+                }
+                PatternNode::Mapped(child, rows) => {
+                    let p = Spot::apply(rows, at.p, at.w);
+                    (*child, at.within(p))
+                }
+                _ => return (id, at),
+            };
+        }
+    }
+
+    /// Patterns whose mean is known without cutting: pictures, and checkers with many cells.
+    fn whole(&mut self, p: &Polygon, (id, at): (u32, &Spot<'_>), met: &Met<'_>, shade: &Shade) -> Option<Bound> {
+        let patterns = &self.scene.world.patterns;
+        match &patterns.nodes[id as usize] {
+            PatternNode::Image { texture, mapping: Mapping::Normal, filter: Filter::Nearest, turn_normal, .. } => {
+                let detail = self.scene.world.spaces.get(met.primitive.space as usize)?.detail.as_ref()?;
+                let outward = if met.start.outward { met.n } else { met.n.map(|x| -x) };
+                let n = turned(
+                    turn_normal,
+                    unit(turned(&detail.made_normal_from_world, outward), &detail.made_normal_from_world),
+                );
+                let texture = &patterns.textures[*texture as usize];
+                let [width, height] = texture.size().map(|n| n as f64);
+                let share =
+                    |f: Form| f.arcsine() * Form::between(INVERSE_PI.next_down(), INVERSE_PI) + Form::constant(0.5);
+                let x = share(n[0]).times(width);
+                let y = (Form::constant(1.0) - share(n[1])).times(height);
+                Texels { texture, edges: [Edge::Clamp; 2], x, y }.light(p, shade)
+            }
+            PatternNode::Checker(a, b, size) => {
+                let (PatternNode::Constant(a), PatternNode::Constant(b)) =
+                    (&patterns.nodes[*a as usize], &patterns.nodes[*b as usize])
+                else {
+                    return None;
+                };
+                let mut free = at.p.iter().filter(|c| c.fixed.is_none()).map(|c| c.over);
+                let (u, v) = (free.next()?, free.next()?);
+                if free.next().is_some() {
+                    return None;
+                }
+                let lines = |x: Form| numbers(p, x, at.w, *size).map_or(i64::MAX / 2, |(a, b)| b - a);
+                if lines(u).saturating_add(lines(v)) <= FEW_LINES {
+                    return None;
+                }
+                let level: f64 = at.p.iter().filter_map(|c| c.fixed).map(|x| (x / size).floor()).sum();
+                let w = at.w.times(*size);
+                let found = parity(p, u, v, w).or_else(|| parity(p, v, u, w))?;
+                let sign = if (0.5 * level).floor() * 2.0 == level { 1.0 } else { -1.0 };
+                Some(alternating(p, shade, (a, b), sign, &found))
+            }
+            _ => None,
+        }
     }
 
     /// The colours of pattern `id`, each where it is seen.
@@ -118,12 +187,16 @@ impl<'c> Study<'c> {
             PatternNode::Gradient(a, b, axis, size) => {
                 let x = (at.p[*axis as usize].over / at.w) / Form::constant(*size);
                 let one = Form::constant(1.0);
-                let share = if x.is_known() { one - (one - x.positive_part()).positive_part() } else { Form::between(0.0, 1.0) };
+                let share = if x.is_known() {
+                    one - (one - x.positive_part()).positive_part()
+                } else {
+                    Form::between(0.0, 1.0)
+                };
                 self.mixed(p, (*a, *b), [share; 3], at, then)
             }
-            PatternNode::Mix(a, b, by) => self.coloured(p, *by, at, &mut |study, q, share| {
-                study.mixed(q, (*a, *b), share, at, then)
-            }),
+            PatternNode::Mix(a, b, by) => {
+                self.coloured(p, *by, at, &mut |study, q, share| study.mixed(q, (*a, *b), share, at, then))
+            }
             PatternNode::Add(a, b) => self.coloured(p, *a, at, &mut |study, q, x| {
                 study.coloured(q, *b, at, &mut |study, q, y| then(study, q, three!(c => x[c] + y[c])))
             }),
@@ -139,7 +212,14 @@ impl<'c> Study<'c> {
     }
 
     /// From pattern `a` to pattern `b` by `share`.
-    fn mixed(&mut self, p: &Polygon, (a, b): (u32, u32), share: [Form; 3], at: &Spot<'_>, then: Coloured<'_, 'c>) -> Bound {
+    fn mixed(
+        &mut self,
+        p: &Polygon,
+        (a, b): (u32, u32),
+        share: [Form; 3],
+        at: &Spot<'_>,
+        then: Coloured<'_, 'c>,
+    ) -> Bound {
         self.coloured(p, a, at, &mut |study, q, x| {
             study.coloured(q, b, at, &mut |study, q, y| then(study, q, three!(c => x[c] + share[c] * (y[c] - x[c]))))
         })
@@ -207,6 +287,50 @@ impl<'c> Study<'c> {
     }
 }
 
+/// The light of two colours that alternate, a where the parity is even. Its integral is that of their mean and, times half their
+/// difference, of parity·tinted: the constant and the η part of tinted by the parity's moments, the rest by its size.
+fn alternating(p: &Polygon, shade: &Shade, (a, b): (&[f64; 3], &[f64; 3]), sign: f64, found: &Parity) -> Bound {
+    let color =
+        three!(c => Form::between(if a[c] < b[c] { a[c] } else { b[c] }, if a[c] < b[c] { b[c] } else { a[c] }));
+    let wide = Bound::of(p, three!(c => shade.plain[c] + shade.tinted[c] * color[c]));
+    let middle = three!(c => (Form::constant(a[c]) + Form::constant(b[c])).times(0.5));
+    let even = Bound::of(p, three!(c => shade.plain[c] + shade.tinted[c] * middle[c]));
+    let area = p.area() + AREA_ERROR;
+    let sum = |c: usize| {
+        let (t, half) = (shade.tinted[c], 0.5 * sign * (a[c] - b[c]));
+        if !t.is_known() {
+            return wide.sum[c];
+        }
+        let odd = half * (t.c * found.sum + t.y * found.eta);
+        let size = half.abs() * (t.c.abs() + t.x.abs() + t.y.abs());
+        let off = half.abs() * (t.x.abs() + t.r) * area + size * (found.off + AREA_ERROR);
+        let [lo, hi] = [even.sum[c][0] + odd - off, even.sum[c][1] + odd + off];
+        let plain = wide.sum[c];
+        [if lo > plain[0] { lo } else { plain[0] }, if hi < plain[1] { hi } else { plain[1] }]
+    };
+    Bound { sum: [0, 1, 2].map(sum), ..wide }
+}
+
+/// The image of a vector.
+fn turned(rows: &[[f64; 3]; 3], v: [Form; 3]) -> [Form; 3] {
+    rows.map(|row| dot(row.map(Form::constant), v))
+}
+
+/// The same direction, of length 1; a map that changes nothing leaves unit normals what they are.
+fn unit(v: [Form; 3], map: &[[f64; 3]; 3]) -> [Form; 3] {
+    if *map == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        return v;
+    }
+    let scale = dot(v, v).reciprocal_root();
+    v.map(|x| x * scale)
+}
+
+/// The float just above 1/π, 0.31830988618379067153…
+const INVERSE_PI: f64 = std::f64::consts::FRAC_1_PI;
+
+/// So many lines through a polygon, and checkers are cut at them.
+const FEW_LINES: i64 = 4;
+
 /// Whole numbers beyond this aren't told apart well.
 const MOST_NUMBER: f64 = (1u64 << 40) as f64;
 
@@ -226,7 +350,8 @@ fn numbers(p: &Polygon, x: Form, w: Form, size: f64) -> Option<(i64, i64)> {
     }
     let most = if lo.abs() > hi.abs() { lo.abs() } else { hi.abs() };
     let slack = (x.r + most * unit.r) / least;
-    let rounding = 16.0 * f64::EPSILON * ((x.c.abs() + x.x.abs() + x.y.abs()) / least + most * (1.0 + unit.c.abs() / least));
+    let rounding =
+        16.0 * f64::EPSILON * ((x.c.abs() + x.x.abs() + x.y.abs()) / least + most * (1.0 + unit.c.abs() / least));
     let (lo, hi) = (lo - slack - rounding, hi + slack + rounding);
     (lo > -MOST_NUMBER && hi < MOST_NUMBER).then(|| (lo.floor() as i64, hi.floor() as i64))
 }

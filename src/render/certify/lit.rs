@@ -9,8 +9,8 @@ use super::met::Met;
 use super::polygon::Polygon;
 use super::sheet::{Sheet, Sheets};
 use super::study::Study;
-use crate::math::real::{dot, three};
 use crate::math::Form;
+use crate::math::real::{dot, three};
 
 /// Light that depends on a surface's colour: `plain + color·tinted`.
 #[derive(Clone, Copy)]
@@ -134,7 +134,13 @@ impl<'c> Study<'c> {
     }
 
     /// How much of a light arrives on `p`; `to` leads from the points, times their w, to the light.
-    fn shadowed(&mut self, p: &Polygon, met: &Met<'_>, (number, to): (usize, [Form; 3]), fin: Arrived<'_, 'c>) -> Bound {
+    fn shadowed(
+        &mut self,
+        p: &Polygon,
+        met: &Met<'_>,
+        (number, to): (usize, [Form; 3]),
+        fin: Arrived<'_, 'c>,
+    ) -> Bound {
         let (scene, world) = (self.scene, self.scene.world);
         let light = &world.lights[number];
         let anything = [[0.0, 1.0]; 3];

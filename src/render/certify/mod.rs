@@ -8,16 +8,26 @@ mod bound;
 mod bundle;
 mod certifier;
 mod coat;
+mod estimate;
+mod leaves;
 mod lit;
 mod met;
+mod picture;
+mod pixel;
 mod polygon;
 mod sampler;
 mod sheet;
+mod sobol;
 mod study;
+mod target;
 #[cfg(test)]
 mod tests;
+mod texels;
 mod visible;
+mod waves;
 
 pub use bound::Bound;
 pub use certifier::Certifier;
+pub use picture::{certify, summary};
 pub use sampler::Sampler;
+pub use target::{Pixel, Status, Target, code};

@@ -150,7 +150,12 @@ mod tests {
         for i in 0..3_000 {
             let mut p = Polygon::square();
             let cuts: Vec<Form> = (0..4)
-                .map(|k| Form { c: random(i, k), x: random(i, 10 + k), y: random(i, 20 + k), r: random(i, 30 + k).abs() * 0.1 })
+                .map(|k| Form {
+                    c: random(i, k),
+                    x: random(i, 10 + k),
+                    y: random(i, 20 + k),
+                    r: random(i, 30 + k).abs() * 0.1,
+                })
                 .collect();
             for g in &cuts {
                 p = p.clipped(*g);
@@ -166,7 +171,11 @@ mod tests {
                         (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]) >= -1e-13
                     });
                 assert!(!may || is_in, "case {i}: {at:?}");
-                if is_in { inside += 1 } else { outside += 1 }
+                if is_in {
+                    inside += 1
+                } else {
+                    outside += 1
+                }
                 let f = Form { c: 1.0, x: random(i, 50), y: random(i, 51), r: 0.0 };
                 let (lo, hi) = p.range(f);
                 let v = f.c + f.x * at[0] + f.y * at[1];

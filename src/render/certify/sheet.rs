@@ -6,12 +6,12 @@
 
 use super::super::ray::LocalRay;
 use super::super::shape::quadric::Quadric;
-use super::super::shape::{Ball, BOTTOM, Kind, SIDE, TOP, Tube};
+use super::super::shape::{BOTTOM, Ball, Kind, SIDE, TOP, Tube};
 use super::bundle::Bundle;
 use super::certifier::Certifier;
 use super::polygon::Polygon;
-use crate::math::real::{Real, dot, minus, three};
 use crate::math::Form;
+use crate::math::real::{Real, dot, minus, three};
 
 /// One crossing of the rays of a region with a surface.
 #[derive(Clone, Debug)]
@@ -306,7 +306,16 @@ impl Sheets<'_> {
         }
         let mut tests = vec![t];
         tests.extend(ends(t).into_iter().flatten());
-        self.push(Sheet { id, part: SIDE, inside: true, tests, nearness: t.reciprocal(), t, convex: true, flat: false });
+        self.push(Sheet {
+            id,
+            part: SIDE,
+            inside: true,
+            tests,
+            nearness: t.reciprocal(),
+            t,
+            convex: true,
+            flat: false,
+        });
         Ok(())
     }
 
