@@ -78,7 +78,7 @@ impl<const MUTANT: u8> Div for Form<MUTANT> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        self * o.reciprocal()
+        Mul::mul(self, o.reciprocal())
     }
 }
 

@@ -53,13 +53,13 @@ fn value<const M: u8>(f: Form<M>, at: [f64; 2], within: f64) -> Dd {
     Dd::new(f.c) + Dd::new(f.x) * x + Dd::new(f.y) * y + Dd::new(f.r) * Dd::new(within)
 }
 
-/// Whether the form holds the value there.
-fn holds<const M: u8>(f: Form<M>, at: [f64; 2], v: Dd) -> bool {
+/// Whether the form holds the value there, which was computed from numbers up to `size`.
+fn holds<const M: u8>(f: Form<M>, at: [f64; 2], v: Dd, size: f64) -> bool {
     if !f.is_known() {
         return true;
     }
     let off = v - value(Form::<M> { r: 0.0, ..f }, at, 0.0);
-    let slack = FINE * (f.c.abs() + f.x.abs() + f.y.abs() + v.hi.abs());
+    let slack = FINE * (f.c.abs() + f.x.abs() + f.y.abs() + v.hi.abs() + size);
     Real::abs(off - Dd::new(0.0)).hi <= f.r + slack
 }
 
@@ -68,14 +68,24 @@ const OPERATIONS: u64 = 14;
 /// Tries one random operation; whether its result holds what exact arithmetic gives.
 fn tried<const M: u8>(case: u64) -> bool {
     let mut d = Draw { key: KeyedHash::new().with(case), n: 0 };
-    let (mut a, b): (Form<M>, Form<M>) = (d.form(), d.form());
-    let at = [d.signed(), d.signed()];
+    let (mut a, mut b): (Form<M>, Form<M>) = (d.form(), d.form());
+    let mut at = [d.signed(), d.signed()];
     let zero = Dd::new(0.0);
     let op = case % OPERATIONS;
     if op == 11 || op == 13 {
         // A cosine.
         let shrink = 1.0 / (1.0 + a.c.abs() + a.x.abs() + a.y.abs() + a.r);
         a = Form { c: a.c.abs() * shrink, x: a.x * shrink, y: a.y * shrink, r: a.r * shrink };
+    }
+    if op == 8 && d.unit() < 0.5 {
+        // Hardly below 0, at its upper end: there is little but rounding.
+        let sum = a.x.abs() + a.y.abs() + a.r;
+        a.c = sum - sum * d.size(-12, -40).abs();
+        at = [a.x.signum(), a.y.signum()];
+    }
+    if op == 12 && d.unit() < 0.5 {
+        // All but the same.
+        b = Form { c: a.c.next_up(), ..a };
     }
     let (u, v) = (value(a, at, d.signed()), value(b, at, d.signed()));
     let largest = |x: Dd| if x.lt(zero).0 { zero } else { x };
@@ -105,7 +115,7 @@ fn tried<const M: u8>(case: u64) -> bool {
         _ => (a.arcsine(), arcsine(u)),
     };
     let within = exact.hi >= form.lo() && exact.hi <= form.hi();
-    !exact.hi.is_finite() || (holds(form, at, exact) && within)
+    !exact.hi.is_finite() || (holds(form, at, exact, (1.0 + a.magnitude()) * (1.0 + b.magnitude())) && within)
 }
 
 /// Newton's step from what the library gives, its sine and cosine by their series around multiples of 1/8.

@@ -102,12 +102,6 @@ impl Bound {
         Bound { sum: scaled(self.sum), range: scaled(self.range), form }
     }
 
-    /// What holds of `whole` if it is one or the other light, nobody knows where.
-    pub fn either(whole: &Polygon, a: Bound, b: Bound) -> Bound {
-        let range = [0, 1, 2].map(|i| hull(a.range[i], b.range[i]));
-        Bound::somewhere(whole.area(), range)
-    }
-
     /// What holds of `whole`, which was cut into the polygons of `a` and `b`, which overlap. Each point's light is that of one of
     /// both; the other's at the points of the strip has to be taken out: the strip's area times something among the values.
     pub fn joined(whole: &Polygon, (pa, a): (&Polygon, Bound), (pb, b): (&Polygon, Bound)) -> Bound {

@@ -21,6 +21,8 @@ pub struct Certifier<'w> {
     pub(super) depth: u32,
     /// Where the light surely lies that rays see which go on so many times more, and every part of that light.
     ceilings: Vec<[Span; 3]>,
+    /// The same for what each material gives back of its own light.
+    own: Vec<[Span; 3]>,
     /// Where the values of each pattern lie.
     patterns: Vec<[Span; 3]>,
 }
@@ -30,18 +32,29 @@ impl<'w> Certifier<'w> {
     pub fn new(world: &'w World, options: &Options) -> Certifier<'w> {
         let depth = options.max_depth;
         let patterns = pattern_ranges(world);
-        let ceilings = ceilings(world, &patterns, depth);
-        Certifier { world, grid: world.camera.grid(options), depth, ceilings, patterns }
+        let (own, ceilings) = ceilings(world, &patterns, depth);
+        Certifier { world, grid: world.camera.grid(options), depth, ceilings, own, patterns }
     }
 
     /// What is known of the light in a rectangle of the picture, in pixels: left, top, right, bottom. ξ grows to the right and η
     /// downwards.
     pub fn region(&self, rect: [f64; 4]) -> Bound {
+        self.studied(rect, false)
+    }
+
+    /// One form for the light all over a rectangle, if there is one: quicker than [`region`](Certifier::region) where there
+    /// is none.
+    pub fn form(&self, rect: [f64; 4]) -> Option<[Form; 3]> {
+        self.studied(rect, true).form.filter(|form| form.iter().all(|f| f.is_known()))
+    }
+
+    fn studied(&self, rect: [f64; 4], undivided: bool) -> Bound {
         let [left, top, right, bottom] = rect;
         let x = Form { x: 0.5 * (right - left), ..Form::between(0.5 * (left + right), 0.5 * (left + right)) };
         let y = Form { y: 0.5 * (bottom - top), ..Form::between(0.5 * (top + bottom), 0.5 * (top + bottom)) };
         let (o, d) = self.grid.ray::<Form>(x, y);
-        let mut study = Study::new(self, rect);
+        let mut study = Study::new(self);
+        study.undivided = undivided;
         let square = Polygon::square();
         let bound = study.seen(&square, &Bundle { o, d, start: None }, self.depth);
         bound.knowing(&square, self.ceiling(self.depth))
@@ -51,6 +64,11 @@ impl<'w> Certifier<'w> {
     pub fn ceiling(&self, depth: u32) -> [Span; 3] {
         let last = self.ceilings.len() - 1;
         self.ceilings[(depth as usize).min(last)]
+    }
+
+    /// Where the own light of surface `id` lies.
+    pub(super) fn own_ceiling(&self, id: u32) -> [Span; 3] {
+        self.own[self.world.primitive(id).material as usize]
     }
 
     /// Where the values of pattern `id` lie.
@@ -86,8 +104,9 @@ impl<'w> Certifier<'w> {
     }
 }
 
-/// By how often rays go on: where the light lies that they see. Every sum of some of its parts lies there, too.
-fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> Vec<[Span; 3]> {
+/// By material: where its own light lies; by how often rays go on: where the light lies that they see. Every sum of some of
+/// their parts lies there, too.
+fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> (Vec<[Span; 3]>, Vec<[Span; 3]>) {
     let slot = |s: Slot, c: usize| match s {
         Slot::Constant(v) => [v[c]; 2],
         Slot::Pattern(id) => patterns[id as usize][c],
@@ -113,6 +132,7 @@ fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> Vec<[Span; 3]>
     let up = |x: f64| x * (1.0 + 1.0 / (1u64 << 40) as f64);
     let mut all: Vec<[Span; 3]> = Vec::new();
     let span = |most: f64| if any_negative { [-most, most] } else { [0.0, most] };
+    let owns = world.materials.iter().map(|m| [0, 1, 2].map(|c| span(up(own(m, c))))).collect();
     let background = world.background.map(f64::abs);
     let mut light = [0, 1, 2].map(|c| up(larger(background[c], most(&|m| own(m, c)))));
     all.push(light.map(span));
@@ -125,7 +145,7 @@ fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> Vec<[Span; 3]>
         light = next;
         all.push(light.map(span));
     }
-    all
+    (owns, all)
 }
 
 /// Where the values of each pattern lie.

@@ -12,7 +12,7 @@ use super::study::Study;
 use super::texels::Texels;
 use super::waves::{Parity, parity};
 use crate::math::Form;
-use crate::math::real::{Real, dot, three};
+use crate::math::real::{dot, three};
 use crate::scene::{Filter, Mapping};
 
 /// Most lines of one pattern through a polygon that it is cut at.
@@ -56,7 +56,8 @@ impl<'s> Spot<'s> {
         Spot { p, local: self.local, w: self.w, spaces: self.spaces }
     }
 
-    fn from_local(&self, rows: &Rows) -> [Coordinate; 3] {
+    /// The point brought from the shape's frame to a space.
+    fn brought(&self, rows: &Rows) -> [Coordinate; 3] {
         let zero = Form::constant(0.0);
         // A flat shape's own level is the only coordinate that stays the same in its frame.
         let local = self.local.map(|over| Coordinate { over, fixed: (over == zero).then_some(0.0) });
@@ -83,7 +84,7 @@ impl<'c> Study<'c> {
         let zero = Coordinate { over: Form::constant(0.0), fixed: Some(0.0) };
         let spot = Spot { p: [zero; 3], local, w: met.w, spaces: &spaces };
         let at = match spaces.first() {
-            Some(first) => spot.from_local(first),
+            Some(first) => spot.brought(first),
             None => return self.unknown(p),
         };
         let (id, at) = self.unwrapped(id, spot.within(at));
@@ -98,7 +99,7 @@ impl<'c> Study<'c> {
         loop {
             (id, at) = match &self.scene.world.patterns.nodes[id as usize] {
                 PatternNode::InSpace(child, space) => {
-                    let p = at.from_local(&at.spaces[*space as usize]);
+                    let p = at.brought(&at.spaces[*space as usize]);
                     (*child, at.within(p))
                 }
                 PatternNode::Mapped(child, rows) => {
@@ -112,6 +113,9 @@ impl<'c> Study<'c> {
 
     /// Patterns whose mean is known without cutting: pictures, and checkers with many cells.
     fn whole(&mut self, p: &Polygon, (id, at): (u32, &Spot<'_>), met: &Met<'_>, shade: &Shade) -> Option<Bound> {
+        if self.undivided {
+            return None; // their form is of little use
+        }
         let patterns = &self.scene.world.patterns;
         match &patterns.nodes[id as usize] {
             PatternNode::Image { texture, mapping: Mapping::Normal, filter: Filter::Nearest, turn_normal, .. } => {
@@ -177,7 +181,7 @@ impl<'c> Study<'c> {
                 })
             }
             PatternNode::InSpace(child, space) => {
-                let p2 = at.from_local(&at.spaces[*space as usize]);
+                let p2 = at.brought(&at.spaces[*space as usize]);
                 self.coloured(p, *child, &at.within(p2), then)
             }
             PatternNode::Mapped(child, rows) => {

@@ -82,9 +82,7 @@ pub fn plan(leaves: &[Leaf], target: &Target, most: u32) -> Option<Plan> {
     let mut settled: [f64; 3] = [0, 1, 2].map(|c| leaves.iter().map(|l| halves(l, c)).sum());
     let (mut weights, mut best) = (0.0, None::<(usize, f64, f64)>);
     for (k, &i) in order.iter().enumerate() {
-        for c in 0..3 {
-            settled[c] -= halves(&leaves[i], c);
-        }
+        settled = [0, 1, 2].map(|c| settled[c] - halves(&leaves[i], c));
         weights += weight(&leaves[i]);
         let left = (0..3).map(|c| 1.0 - larger(settled[c], 0.0) / room[c]).fold(1.0, smaller);
         if !(left > 0.05) {

@@ -67,7 +67,9 @@ impl<'c> Study<'c> {
         if met.surfacing.bump.is_some() || !met.is_useful(p) {
             return self.unknown(p);
         }
+        let outer = std::mem::replace(&mut self.ceiling, self.scene.own_ceiling(sheet.id));
         let own = self.own_light(p, &met, &shares);
+        self.ceiling = outer;
         if depth == 0 || !(met.surfacing.mirrors() || met.surfacing.ior.is_some()) {
             return own;
         }

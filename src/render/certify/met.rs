@@ -9,8 +9,8 @@ use super::super::world::World;
 use super::bundle::{Bundle, Start};
 use super::polygon::Polygon;
 use super::sheet::Sheet;
+use crate::math::Form;
 use crate::math::real::{dot, each3, three};
-use crate::math::{Form, Real};
 
 /// A surface that rays have met.
 pub struct Met<'w> {

@@ -69,7 +69,7 @@ impl Certifier<'_> {
         let within = x + side <= picture[0] && y + side <= picture[1];
         let rect = [x as f64, y as f64, (x + side) as f64, (y + side) as f64];
         if within
-            && let Some(form) = self.region(rect).form
+            && let Some(form) = self.form(rect)
             && let Some(pixels) = all_proved(form, side, target)
         {
             for (i, pixel) in (0..).zip(pixels) {

@@ -74,10 +74,8 @@ impl Certifier<'_> {
         let mut value = [0.0; 3];
         for (i, (leaf, &n)) in leaves.iter().zip(&plan.samples).enumerate() {
             if n == 0 {
-                for c in 0..3 {
-                    let [lo, hi] = leaf.bound.sum[c];
-                    value[c] += leaf.share * 0.125 * (lo + hi);
-                }
+                let middle = |c: usize| 0.125 * (leaf.bound.sum[c][0] + leaf.bound.sum[c][1]);
+                value = [0, 1, 2].map(|c| value[c] + leaf.share * middle(c));
             }
             let [l, t, r, b] = leaf.rect;
             for k in 0..n {

@@ -12,10 +12,10 @@ const MOST_PIECES: u32 = 96;
 pub struct Study<'c> {
     /// The scene.
     pub scene: &'c Certifier<'c>,
-    /// The rectangle of the picture that is studied, in pixels: left, top, right, bottom.
-    pub rect: [f64; 4],
     /// Where the light of the rays at hand surely lies, whatever they meet.
     pub ceiling: [Span; 3],
+    /// Whether only one form for all of the region is of any use: then nothing is cut.
+    pub undivided: bool,
     /// Cuts so far.
     pieces: u32,
 }
@@ -24,9 +24,9 @@ pub struct Study<'c> {
 pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> Bound;
 
 impl<'c> Study<'c> {
-    /// Of a rectangle of the picture, with nothing spent.
-    pub fn new(scene: &'c Certifier<'c>, rect: [f64; 4]) -> Study<'c> {
-        Study { scene, rect, ceiling: [[0.0; 2]; 3], pieces: 0 }
+    /// With nothing known and nothing spent.
+    pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
+        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, pieces: 0 }
     }
 
     /// What is sure without looking.
@@ -44,7 +44,7 @@ impl<'c> Study<'c> {
             return branch(self, p, false);
         }
         self.pieces += 1;
-        if self.pieces > MOST_PIECES || p.is_full() {
+        if self.undivided || self.pieces > MOST_PIECES || p.is_full() {
             return self.unknown(p);
         }
         let (yes, no) = (p.clipped(g), p.clipped(-g));
@@ -66,15 +66,5 @@ impl<'c> Study<'c> {
             true => study.split_all(q, rest, branch),
             false => branch(study, q, false),
         })
-    }
-
-    /// Goes both ways of a test that nothing is known of.
-    pub fn either(&mut self, p: &Polygon, branch: Branch<'_, 'c>) -> Bound {
-        self.pieces += 4;
-        if self.pieces > MOST_PIECES {
-            return self.unknown(p);
-        }
-        let (a, b) = (branch(self, p, true), branch(self, p, false));
-        Bound::either(p, a, b)
     }
 }

@@ -21,7 +21,7 @@ pub struct Target {
 impl Target {
     /// An error of so many codes in a file of 8 bits, with confidence 0.999 and room enough for what the examples need.
     pub fn new(codes: f64) -> Target {
-        Target { codes, quantum: 1.0, confidence: 0.999, evaluations: 256, samples: 1 << 15 }
+        Target { codes, quantum: 1.0, confidence: 0.999, evaluations: 256, samples: 1 << 17 }
     }
 
     /// What is left of the error when the rounding of written codes is taken out.
