@@ -62,6 +62,9 @@ impl<const MUTANT: u8> Form<MUTANT> {
 
     /// Anything from `lo` to `hi`.
     pub fn between(lo: f64, hi: f64) -> Self {
+        if lo == hi {
+            return Self::constant(lo);
+        }
         let c = 0.5 * lo + 0.5 * hi;
         // The larger of both ways, each rounded once.
         let (down, up) = (c - lo, hi - c);
@@ -110,7 +113,8 @@ impl<const MUTANT: u8> Form<MUTANT> {
     fn made(op: u8, [c, x, y]: [f64; 3], remainder: f64, rounded: f64) -> Self {
         let remainder = if MUTANT == 2 * op { 0.5 * remainder } else { remainder };
         let rounded = if MUTANT == 2 * op - 1 { 0.0 } else { rounded };
-        if remainder == 0.0 && rounded == 0.0 {
+        // Nothing but sums is known to be exact here: what else seems to be 0 may have underflowed.
+        if op == SUM && remainder == 0.0 && rounded == 0.0 {
             return Form { c, x, y, r: 0.0 };
         }
         let r = (remainder + U * rounded) * (1.0 + 32.0 * U) + UNDERFLOW;
@@ -250,6 +254,9 @@ impl<const MUTANT: u8> Form<MUTANT> {
 
     /// One that holds both.
     pub fn hull(self, o: Self) -> Self {
+        if self == o {
+            return self;
+        }
         let mid = |a: f64, b: f64| 0.5 * a + 0.5 * b;
         let [c, x, y] = [mid(self.c, o.c), mid(self.x, o.x), mid(self.y, o.y)];
         let apart = 0.5 * ((self.c - o.c).abs() + (self.x - o.x).abs() + (self.y - o.y).abs());

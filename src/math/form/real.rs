@@ -39,13 +39,14 @@ impl<const MUTANT: u8> Form<MUTANT> {
     /// `s` times self.
     #[inline(always)]
     pub fn times(self, s: f64) -> Self {
-        if s == 0.0 && self.is_known() {
+        if s == 1.0 || s == -1.0 {
+            return if s > 0.0 { self } else { -self };
+        }
+        if (s == 0.0 && self.is_known()) || self == Self::constant(0.0) {
             return Self::constant(0.0);
         }
         let [c, x, y] = [self.c * s, self.x * s, self.y * s];
-        let exact = s == 1.0 || s == -1.0;
-        let sizes = if exact { 0.0 } else { c.abs() + x.abs() + y.abs() };
-        Self::made(PRODUCT, [c, x, y], self.r * s.abs(), sizes)
+        Self::made(PRODUCT, [c, x, y], self.r * s.abs(), c.abs() + x.abs() + y.abs())
     }
 }
 

@@ -36,6 +36,11 @@ impl Draw {
         self.signed() * f64::from_bits(((1023 + k) as u64) << 52)
     }
     fn form<const M: u8>(&mut self) -> Form<M> {
+        if self.unit() < 0.05 {
+            // Products of these underflow.
+            let [c, x, y, r] = [(); 4].map(|_| self.size(-500, -1022));
+            return Form { c, x, y, r: r.abs() };
+        }
         let c = self.size(6, -6);
         let near = if self.unit() < 0.5 { 0 } else { -30 };
         Form {

@@ -102,7 +102,10 @@ impl Certifier<'_> {
         });
         let known = total(leaves);
         let value = [0, 1, 2].map(|c| value[c].clamp(known[c][0], known[c][1]));
-        let interval = |c: usize| [value[c] - plan.half_width[c], value[c] + plan.half_width[c]];
+        let interval = |c: usize| {
+            let half = plan.half_width[c];
+            [larger(value[c] - half, known[c][0]), smaller(value[c] + half, known[c][1])]
+        };
         let codes = (0..3).map(|c| target.error(value[c], interval(c))).fold(0.0, larger);
         let status = if codes <= target.codes { Status::Bounded } else { Status::Open };
         Pixel { value, half_width: plan.half_width, codes, status, evaluations, samples: plan.total }
