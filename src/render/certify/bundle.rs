@@ -33,6 +33,8 @@ pub struct Bundle {
     pub d: [Form; 3],
     /// Where they start, unless that is the camera or a light.
     pub start: Option<Start>,
+    /// The rectangle of the picture that they pass through, if they come from the camera.
+    pub rect: Option<[f64; 4]>,
 }
 
 impl Bundle {
@@ -49,6 +51,11 @@ impl Bundle {
     /// The surfaces that rays on `p` may meet; `None` where there are too many.
     pub fn candidates(&self, scene: &Certifier<'_>, p: &Polygon) -> Option<Vec<u32>> {
         let margin = margin(f64::EPSILON);
+        if let Some(rect) = self.rect {
+            let (grid, frustum) = (&scene.grid, scene.grid.frustum(rect, margin));
+            let plane = |n, offset| grid.may_meet_plane(rect, n, offset, margin);
+            return scene.gather(MOST_CANDIDATES, |b| frustum.may_meet(b), plane);
+        }
         let origins = bounds_of(p, self.o)?;
         let directions = bounds_of(p, self.d)?;
         let axis = directions.centre();

@@ -56,7 +56,7 @@ impl<'w> Certifier<'w> {
         let mut study = Study::new(self);
         study.undivided = undivided;
         let square = Polygon::square();
-        let bound = study.seen(&square, &Bundle { o, d, start: None }, self.depth);
+        let bound = study.seen(&square, &Bundle { o, d, start: None, rect: Some(rect) }, self.depth);
         bound.knowing(&square, self.ceiling(self.depth))
     }
 
@@ -80,11 +80,6 @@ impl<'w> Certifier<'w> {
     pub(super) fn made_scale(&self, primitive: &Primitive) -> f64 {
         let made = self.world.spaces.get(primitive.space as usize);
         made.and_then(|m| m.rescale.as_ref()).map_or(1.0, |r| r.inverse)
-    }
-
-    /// Whether crossings with surface `id` are kept to its box.
-    pub(super) fn is_extreme(&self, id: u32) -> bool {
-        self.world.extremes.binary_search_by_key(&id, |e| e.0).is_ok()
     }
 
     /// The surfaces that aren't excluded, if they aren't more than `most`.

@@ -81,7 +81,7 @@ impl<'c> Study<'c> {
         let back = match met.at {
             Some(o) if met.bent.is_none() => {
                 let d = mirrored(met.d, met.n);
-                self.seen(p, &Bundle { o, d, start: Some(met.start) }, depth - 1)
+                self.seen(p, &Bundle { o, d, start: Some(met.start), rect: None }, depth - 1)
             }
             _ => Bound::within(p, self.scene.ceiling(depth - 1)),
         };
@@ -149,7 +149,7 @@ impl<'c> Study<'c> {
         if !light.touched.is_empty() {
             return fin(self, p, anything);
         }
-        let from_light = Bundle { o: light.at.map(Form::constant), d: to.map(|x| -x), start: None };
+        let from_light = Bundle { o: light.at.map(Form::constant), d: to.map(|x| -x), start: None, rect: None };
         let bounds = met.at.and_then(|at| bounds_of(p, at));
         let candidates = match &bounds {
             Some(points) => Bundle::occluders(scene, light.at, points),
@@ -167,7 +167,9 @@ impl<'c> Study<'c> {
                 (false, _) => None,
                 // What leaves a flat or convex surface to the outside doesn't come back.
                 (true, _) if met.start.outward || !met.is_curved() => continue,
-                (true, Some(o)) => Some(Bundle { o, d: from_constant(light.at, o), start: Some(met.start) }),
+                (true, Some(o)) => {
+                    Some(Bundle { o, d: from_constant(light.at, o), start: Some(met.start), rect: None })
+                }
                 (true, None) => return fin(self, p, anything),
             };
             let (ray, end) = match &from_here {

@@ -67,9 +67,6 @@ impl Sheets<'_> {
             let (mesh, k) = world.triangle(id);
             return self.triangle(id, mesh.corners(k), mesh.normal(k));
         };
-        if self.scene.is_extreme(id) {
-            return Err(Unknown);
-        }
         if let Kind::Triangle(i) = primitive.kind {
             let tri = &world.tables().triangles[i as usize];
             return self.triangle(id, tri.v, tri.n);
