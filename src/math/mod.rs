@@ -5,6 +5,7 @@ pub mod affine;
 pub mod best;
 pub mod dd;
 pub mod float;
+pub mod form;
 pub mod fun;
 pub mod hash;
 pub mod interval;
@@ -15,5 +16,6 @@ pub mod tri;
 
 pub use affine::Affine;
 pub use dd::Dd;
+pub use form::Form;
 pub use interval::Interval;
 pub use real::{Elem, Lane, Mask, Real, Single};

@@ -3,7 +3,7 @@
 //! [`World::build`] takes from a scene what its picture requires; [`render`] traces it tile by tile; [`probe`] tells what one
 //! pixel sees. Within: `shape/` holds the kernels, one a file, each written once for every scalar; `bvh`, `cull` and `candidates` find
 //! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
-//! meet.
+//! meet. [`certify`] bounds what all rays of a region see, and brings pixels to a stated error.
 
 mod assemble;
 pub mod batch;
@@ -13,6 +13,7 @@ pub mod bvh;
 pub mod camera;
 mod candidates;
 mod census;
+pub mod certify;
 mod confine;
 mod crew;
 pub mod cull;

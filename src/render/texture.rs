@@ -38,6 +38,16 @@ impl Texture {
         self.texels.len() * 3 + size_of::<[f64; 256]>()
     }
 
+    /// Texels across and down.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The linear colour of the texel in column `i` and row `j` from the top, counted on beyond the edges as they say.
+    pub fn at_texel(&self, i: i64, j: i64, edges: [Edge; 2]) -> [f64; 3] {
+        self.texel(i as f64, j as f64, edges)
+    }
+
     /// The linear colour at (u, v); (0, 0) is the lower left corner of the picture, (1, 1) the upper right. A coordinate that
     /// isn't finite, as of a point too far away for a number, counts as the picture's left or upper edge.
     #[inline(always)]

@@ -53,6 +53,11 @@ impl Mesh {
         self.data.triangles.len()
     }
 
+    /// Whether normals for shading are those of its triangles.
+    pub fn is_flat(&self) -> bool {
+        self.normals.is_empty()
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -16,6 +16,7 @@ mod tube;
 use crate::math::Real;
 pub use mesh::Mesh;
 pub use primitive::{Kind, Primitive, Surface};
+pub use sphere::Ball;
 pub use torus::Ring;
 pub use triangle::TriangleData;
 pub use tube::Tube;

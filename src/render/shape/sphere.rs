@@ -7,8 +7,9 @@ use crate::math::real::{dot, each3};
 use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// |p|² − r².
-pub(super) struct Ball {
-    pub(super) r: f64,
+pub struct Ball {
+    /// Its radius.
+    pub r: f64,
 }
 
 impl Quadric for Ball {

@@ -1,0 +1,191 @@
+//! What certificates need of a world, found once: how bright anything can be, and tables of its pictures.
+
+use super::super::bounds::{Bounds, larger, smaller};
+use super::super::camera::PixelGrid;
+use super::super::material::{Slot, Surfacing};
+use super::super::options::Options;
+use super::super::pattern::PatternNode;
+use super::super::shape::Primitive;
+use super::super::world::World;
+use super::bound::{Bound, Span, hull};
+use super::bundle::Bundle;
+use super::polygon::Polygon;
+use super::study::Study;
+use crate::math::Form;
+
+/// A world, as seen by its camera in a picture of a given size, about which certificates are made.
+pub struct Certifier<'w> {
+    pub(super) world: &'w World,
+    pub(super) grid: PixelGrid<'w>,
+    /// How often rays go on.
+    pub(super) depth: u32,
+    /// Where the light surely lies that rays see which go on so many times more, and every part of that light.
+    ceilings: Vec<[Span; 3]>,
+    /// The same for what each material gives back of its own light.
+    own: Vec<[Span; 3]>,
+    /// Where the values of each pattern lie.
+    patterns: Vec<[Span; 3]>,
+}
+
+impl<'w> Certifier<'w> {
+    /// Looks through the world once.
+    pub fn new(world: &'w World, options: &Options) -> Certifier<'w> {
+        let depth = options.max_depth;
+        let patterns = pattern_ranges(world);
+        let (own, ceilings) = ceilings(world, &patterns, depth);
+        Certifier { world, grid: world.camera.grid(options), depth, ceilings, own, patterns }
+    }
+
+    /// What is known of the light in a rectangle of the picture, in pixels: left, top, right, bottom. ξ grows to the right and η
+    /// downwards.
+    pub fn region(&self, rect: [f64; 4]) -> Bound {
+        self.studied(rect, false)
+    }
+
+    /// One form for the light all over a rectangle, if there is one: quicker than [`region`](Certifier::region) where there
+    /// is none.
+    pub fn form(&self, rect: [f64; 4]) -> Option<[Form; 3]> {
+        self.studied(rect, true).form.filter(|form| form.iter().all(|f| f.is_known()))
+    }
+
+    fn studied(&self, rect: [f64; 4], undivided: bool) -> Bound {
+        let [left, top, right, bottom] = rect;
+        let x = Form { x: 0.5 * (right - left), ..Form::between(0.5 * (left + right), 0.5 * (left + right)) };
+        let y = Form { y: 0.5 * (bottom - top), ..Form::between(0.5 * (top + bottom), 0.5 * (top + bottom)) };
+        let (o, d) = self.grid.ray::<Form>(x, y);
+        let mut study = Study::new(self);
+        study.undivided = undivided;
+        let square = Polygon::square();
+        let bound = study.seen(&square, &Bundle { o, d, start: None, rect: Some(rect) }, self.depth);
+        bound.knowing(&square, self.ceiling(self.depth))
+    }
+
+    /// Where the light surely lies that a ray sees which goes on `depth` times at most.
+    pub fn ceiling(&self, depth: u32) -> [Span; 3] {
+        let last = self.ceilings.len() - 1;
+        self.ceilings[(depth as usize).min(last)]
+    }
+
+    /// Where the own light of surface `id` lies.
+    pub(super) fn own_ceiling(&self, id: u32) -> [Span; 3] {
+        self.own[self.world.primitive(id).material as usize]
+    }
+
+    /// Where the values of pattern `id` lie.
+    pub(super) fn pattern_range(&self, id: u32) -> [Span; 3] {
+        self.patterns[id as usize]
+    }
+
+    /// A primitive's lengths as they were made, over those of its frame.
+    pub(super) fn made_scale(&self, primitive: &Primitive) -> f64 {
+        let made = self.world.spaces.get(primitive.space as usize);
+        made.and_then(|m| m.rescale.as_ref()).map_or(1.0, |r| r.inverse)
+    }
+
+    /// The surfaces that aren't excluded, if they aren't more than `most`.
+    pub(super) fn gather(
+        &self,
+        most: usize,
+        keep: impl FnMut(&Bounds) -> bool,
+        mut keep_plane: impl FnMut([f64; 3], f64) -> bool,
+    ) -> Option<Vec<u32>> {
+        let mut ids: Vec<u32> =
+            self.world.unbounded.iter().filter(|p| keep_plane(p.n, p.offset)).map(|p| p.id).collect();
+        self.world.bvh.gather(keep, |id| {
+            ids.push(id);
+            ids.len() <= most
+        });
+        (ids.len() <= most).then_some(ids)
+    }
+}
+
+/// By material: where its own light lies; by how often rays go on: where the light lies that they see. Every sum of some of
+/// their parts lies there, too.
+fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> (Vec<[Span; 3]>, Vec<[Span; 3]>) {
+    let slot = |s: Slot, c: usize| match s {
+        Slot::Constant(v) => [v[c]; 2],
+        Slot::Pattern(id) => patterns[id as usize][c],
+    };
+    let magnitude = |s: Span| larger(s[0].abs(), s[1].abs());
+    let lights: [f64; 3] = [0, 1, 2].map(|c| world.lights.iter().map(|l| l.color[c].abs()).sum());
+    // The most light of its own, and the most of what is seen behind or mirrored, that a material gives back.
+    let own = |m: &Surfacing, c: usize| {
+        let of = |s: Slot| magnitude(slot(s, c));
+        of(m.color) * (of(m.ambient) * world.ambient[c].abs() + of(m.diffuse) * lights[c]) + of(m.specular) * lights[c]
+    };
+    let onward = |m: &Surfacing, c: usize| magnitude(slot(m.reflect, c)) + magnitude(slot(m.transmit, c));
+    let negative = |m: &Surfacing| {
+        [m.color, m.ambient, m.diffuse, m.specular, m.reflect, m.transmit]
+            .iter()
+            .any(|s| (0..3).any(|c| slot(*s, c)[0] < 0.0))
+    };
+    let most = |f: &dyn Fn(&Surfacing) -> f64| world.materials.iter().fold(0.0, |m, x| larger(m, f(x)));
+    let any_negative = world.materials.iter().any(negative)
+        || world.background.iter().chain(&world.ambient).any(|x| *x < 0.0)
+        || world.lights.iter().any(|l| l.color.iter().any(|x| *x < 0.0));
+    // A few roundings of each step.
+    let up = |x: f64| x * (1.0 + 1.0 / (1u64 << 40) as f64);
+    let mut all: Vec<[Span; 3]> = Vec::new();
+    let span = |most: f64| if any_negative { [-most, most] } else { [0.0, most] };
+    let owns = world.materials.iter().map(|m| [0, 1, 2].map(|c| span(up(own(m, c))))).collect();
+    let background = world.background.map(f64::abs);
+    let mut light = [0, 1, 2].map(|c| up(larger(background[c], most(&|m| own(m, c)))));
+    all.push(light.map(span));
+    for _ in 0..depth {
+        let next = [0, 1, 2].map(|c| up(larger(background[c], most(&|m| own(m, c) + onward(m, c) * light[c]))));
+        let next = [0, 1, 2].map(|c| larger(next[c], light[c]));
+        if next == light || !next.iter().all(|x| x.is_finite()) {
+            break;
+        }
+        light = next;
+        all.push(light.map(span));
+    }
+    (owns, all)
+}
+
+/// Where the values of each pattern lie.
+fn pattern_ranges(world: &World) -> Vec<[Span; 3]> {
+    let mut ranges: Vec<[Span; 3]> = Vec::with_capacity(world.patterns.nodes.len());
+    for node in &world.patterns.nodes {
+        let of = |id: u32| ranges[id as usize];
+        let each = |f: &dyn Fn(usize) -> Span| [0, 1, 2].map(f);
+        let between = |a: u32, b: u32| each(&|c| hull(of(a)[c], of(b)[c]));
+        let range = match node {
+            PatternNode::Constant(v) => v.map(|x| [x; 2]),
+            PatternNode::Checker(a, b, _)
+            | PatternNode::Stripes(a, b, ..)
+            | PatternNode::Rings(a, b, ..)
+            | PatternNode::Gradient(a, b, ..)
+            | PatternNode::Noise(a, b, ..)
+            | PatternNode::Cells(a, b, _)
+            | PatternNode::Brick(a, b, ..) => between(*a, *b),
+            // Texels lie between 0 and 1.
+            PatternNode::Image { .. } => [[0.0, 1.0]; 3],
+            // By the share, wherever it leads: a + s·(b − a).
+            PatternNode::Mix(a, b, by) => each(&|c| {
+                let (a, b, s) = (of(*a)[c], of(*b)[c], of(*by)[c]);
+                let one = |x: Span, s: Span| {
+                    let all = [x[0] * s[0], x[0] * s[1], x[1] * s[0], x[1] * s[1]];
+                    all.iter().fold([all[0]; 2], |m, x| [smaller(m[0], *x), larger(m[1], *x)])
+                };
+                let (p, q) = (one(a, [1.0 - s[1], 1.0 - s[0]]), one(b, s));
+                [p[0] + q[0], p[1] + q[1]]
+            }),
+            PatternNode::Blend(stops, _) => each(&|c| stops.iter().fold(of(stops[0])[c], |m, s| hull(m, of(*s)[c]))),
+            PatternNode::InSpace(child, _) | PatternNode::Mapped(child, _) | PatternNode::Turbulence(child, ..) => {
+                of(*child)
+            }
+            PatternNode::Add(a, b) => each(&|c| [of(*a)[c][0] + of(*b)[c][0], of(*a)[c][1] + of(*b)[c][1]]),
+            PatternNode::Multiply(a, b) => each(&|c| {
+                let (a, b) = (of(*a)[c], of(*b)[c]);
+                let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
+                all.iter().fold([all[0]; 2], |m, x| [smaller(m[0], *x), larger(m[1], *x)])
+            }),
+            PatternNode::Within(child, least, most) => {
+                each(&|c| of(*child)[c].map(|x| smaller(larger(x, *least), *most)))
+            }
+        };
+        ranges.push(range);
+    }
+    ranges
+}

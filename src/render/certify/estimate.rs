@@ -1,0 +1,110 @@
+//! Where no bound is useful: independent replicates of a scrambled sequence, and Student's interval for their mean.
+//!
+//! Each look costs a share of the error probability, and the interval is never narrower than what n samples that all agree
+//! leave open: a feature of up to 3/n of the pixel (the rule of three), as bright as anything can be there.
+
+use super::super::bounds::{larger, smaller};
+use super::bound::Span;
+use super::sampler::Sampler;
+use super::sobol;
+use super::target::Target;
+use crate::math::fun;
+use crate::math::hash::KeyedHash;
+
+/// Independent sequences; 7 degrees of freedom.
+const REPLICATES: usize = 8;
+
+/// Points of each sequence at the first look.
+const FIRST: u32 = 16;
+
+/// A mean and the interval around it.
+pub struct Estimate {
+    /// Linear light.
+    pub value: [f64; 3],
+    /// Half the interval.
+    pub half_width: [f64; 3],
+    /// Rays.
+    pub samples: u32,
+}
+
+/// Samples a pixel, twice as often each time, until `is_enough` or the budget is spent. `range` is where its light lies.
+pub fn estimate(
+    sampler: &mut Sampler<'_>,
+    rect: [f64; 4],
+    (target, budget): (&Target, u32),
+    range: [Span; 3],
+    key: KeyedHash,
+    is_enough: impl Fn(&Estimate) -> bool,
+) -> Option<(Estimate, bool)> {
+    let looks = (budget / (FIRST * REPLICATES as u32)).checked_ilog2()? + 1;
+    // All channels and looks together are to keep the confidence.
+    let t = student_7((1.0 - target.confidence) / (3.0 * looks as f64));
+    let mut sums = [[0.0; 3]; REPLICATES];
+    let mut done = 0;
+    let mut points = Vec::new();
+    for look in 0..looks {
+        let n = FIRST << look;
+        for (replicate, sum) in sums.iter_mut().enumerate() {
+            let key = key.with(replicate as u64);
+            points.clear();
+            points.extend((done..n).map(|i| {
+                let [u, v] = sobol::point(i, key);
+                [rect[0] + u * (rect[2] - rect[0]), rect[1] + v * (rect[3] - rect[1])]
+            }));
+            sampler.trace(rect, &points, |_, light| {
+                for c in 0..3 {
+                    sum[c] += light[c];
+                }
+            });
+        }
+        done = n;
+        let samples = n * REPLICATES as u32;
+        let mut e = Estimate { value: [0.0; 3], half_width: [0.0; 3], samples };
+        for c in 0..3 {
+            let means = sums.map(|s| s[c] / n as f64);
+            let mean = means.iter().sum::<f64>() / REPLICATES as f64;
+            let squares: f64 = means.iter().map(|m| (m - mean) * (m - mean)).sum();
+            let deviation = (squares / ((REPLICATES - 1) * REPLICATES) as f64).sqrt();
+            let unseen = (range[c][1] - range[c][0]) * 3.0 / samples as f64;
+            e.value[c] = larger(smaller(mean, range[c][1]), range[c][0]);
+            e.half_width[c] = larger(t * deviation, unseen);
+        }
+        if is_enough(&e) {
+            return Some((e, true));
+        }
+        if look + 1 == looks {
+            return Some((e, false));
+        }
+    }
+    None
+}
+
+/// The t that Student's distribution with 7 degrees of freedom exceeds, in magnitude, with probability `alpha` (Abramowitz,
+/// Stegun, 26.7.3).
+fn student_7(alpha: f64) -> f64 {
+    let within = |t: f64| {
+        let theta = fun::atan(t / 7f64.sqrt());
+        let cos = 1.0 / (1.0 + t * t / 7.0).sqrt();
+        let sin = t / 7f64.sqrt() * cos;
+        let c2 = cos * cos;
+        std::f64::consts::FRAC_2_PI * (theta + sin * cos * (1.0 + c2 * (2.0 / 3.0 + c2 * 8.0 / 15.0)))
+    };
+    let (mut lo, mut hi) = (0.0, 1e6);
+    for _ in 0..200 {
+        let middle = 0.5 * (lo + hi);
+        if within(middle) < 1.0 - alpha { lo = middle } else { hi = middle }
+    }
+    hi
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (alpha, t) in [(0.1, 1.895), (0.05, 2.365), (0.01, 3.499), (0.001, 5.408)] {
+            assert!((student_7(alpha) - t).abs() < 6e-4, "{alpha}: {}", student_7(alpha));
+        }
+    }
+}

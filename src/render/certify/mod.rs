@@ -1,0 +1,33 @@
+//! Certificates: bounds of the light in regions of the picture that hold for every point of them.
+//!
+//! A pixel's true value is the mean of the light over its square. Rays sample it; a certificate bounds it: the same formulas are
+//! evaluated for all rays of a region at once, as [`Form`](crate::math::Form)s, and the region is cut where a test is undecided. What no cut
+//! can tell apart is charged. See [`Certifier::region`].
+
+mod bound;
+mod bundle;
+mod certifier;
+mod coat;
+mod estimate;
+mod leaves;
+mod lit;
+mod met;
+mod picture;
+mod pixel;
+mod polygon;
+mod sampler;
+mod sheet;
+mod sobol;
+mod study;
+mod target;
+#[cfg(test)]
+mod tests;
+mod texels;
+mod visible;
+mod waves;
+
+pub use bound::Bound;
+pub use certifier::Certifier;
+pub use picture::{certify, summary};
+pub use sampler::Sampler;
+pub use target::{Pixel, Status, Target, code};

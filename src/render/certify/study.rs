@@ -1,0 +1,70 @@
+//! The study of one region: what all its steps share, and the cut in two.
+
+use super::bound::{Bound, Span};
+use super::certifier::Certifier;
+use super::polygon::Polygon;
+use crate::math::Form;
+
+/// Most cuts of one region. A region that needs more is better divided: pieces cost as much as a smaller region does.
+const MOST_PIECES: u32 = 96;
+
+/// What the study of one region knows and has spent.
+pub struct Study<'c> {
+    /// The scene.
+    pub scene: &'c Certifier<'c>,
+    /// Where the light of the rays at hand surely lies, whatever they meet.
+    pub ceiling: [Span; 3],
+    /// Whether only one form for all of the region is of any use: then nothing is cut.
+    pub undivided: bool,
+    /// Cuts so far.
+    pieces: u32,
+}
+
+/// Goes on with a polygon on which a test has come out so.
+pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> Bound;
+
+impl<'c> Study<'c> {
+    /// With nothing known and nothing spent.
+    pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
+        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, pieces: 0 }
+    }
+
+    /// What is sure without looking.
+    pub fn unknown(&self, p: &Polygon) -> Bound {
+        Bound::within(p, self.ceiling)
+    }
+
+    /// Goes both ways of the test g ≥ 0, each on its side of the cut.
+    pub fn split(&mut self, p: &Polygon, g: Form, branch: Branch<'_, 'c>) -> Bound {
+        let (lo, hi) = p.range(g);
+        if lo >= 0.0 {
+            return branch(self, p, true);
+        }
+        if hi < 0.0 {
+            return branch(self, p, false);
+        }
+        self.pieces += 1;
+        if self.undivided || self.pieces > MOST_PIECES || p.is_full() {
+            return self.unknown(p);
+        }
+        let (yes, no) = (p.clipped(g), p.clipped(-g));
+        if no.is_empty() {
+            return branch(self, p, true);
+        }
+        if yes.is_empty() {
+            return branch(self, p, false);
+        }
+        let a = branch(self, &yes, true);
+        let b = branch(self, &no, false);
+        Bound::joined(p, (&yes, a), (&no, b))
+    }
+
+    /// Whether all of the tests g ≥ 0 hold.
+    pub fn split_all(&mut self, p: &Polygon, tests: &[Form], branch: Branch<'_, 'c>) -> Bound {
+        let Some((first, rest)) = tests.split_first() else { return branch(self, p, true) };
+        self.split(p, *first, &mut |study, q, yes| match yes {
+            true => study.split_all(q, rest, branch),
+            false => branch(study, q, false),
+        })
+    }
+}
