@@ -4,8 +4,8 @@ use super::Stop;
 use super::args::AccuracyArgs;
 use crate::diag::Diagnostic;
 use crate::film::{Depth, Format};
-use crate::render::certify::Certificate;
 use crate::render::Options;
+use crate::render::certify::Certificate;
 use crate::scene::{Accuracy, Precision};
 
 impl AccuracyArgs {
@@ -50,7 +50,8 @@ impl AccuracyArgs {
         };
         match error {
             Some(error) if error <= 0.5 * options.quantum => {
-                let d = Diagnostic::error(format!("{} is less than this file's colours can tell apart", fraction(error)));
+                let d =
+                    Diagnostic::error(format!("{} is less than this file's colours can tell apart", fraction(error)));
                 let note = format!("rounding alone is up to {}", fraction(0.5 * options.quantum));
                 Err(Stop::usage(d.note(note).note("`--bits 16` or an `.exr` file round less")))
             }

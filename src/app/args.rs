@@ -1,8 +1,8 @@
 //! The command line. Values are checked, in `argument`, as far as they can be without the scene.
 
 use super::argument::{
-    address, anti_aliasing, assignment, bits, compression, confidence, crop, glob_pattern, max_error, pixel, poll_interval,
-    precision, seconds, size,
+    address, anti_aliasing, assignment, bits, compression, confidence, crop, glob_pattern, max_error, pixel,
+    poll_interval, precision, seconds, size,
 };
 use crate::film::{Compression, Depth};
 use crate::render::Crop;

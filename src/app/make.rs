@@ -97,7 +97,13 @@ impl Make<'_> {
         let Some(streamed) = streamed else { return Ok(None) };
         writer.finish()?;
         let hash = digest.map(Digest::end);
-        Ok(Some(Made { rays: streamed.rays, threads: streamed.threads, hash, pixels: Pixels::File(file), certificate: None }))
+        Ok(Some(Made {
+            rays: streamed.rays,
+            threads: streamed.threads,
+            hash,
+            pixels: Pixels::File(file),
+            certificate: None,
+        }))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What every command does that makes a picture: `render`, `watch` and `gallery` give the same bytes because they share this.
 
-use super::accuracy;
 use super::Stop;
+use super::accuracy;
 use super::args::ViewArgs;
 use super::view::settings_line;
 use crate::diag::Diagnostic;

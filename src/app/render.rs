@@ -134,8 +134,11 @@ fn maps<'a>(args: &'a RenderArgs, evaluated: &Evaluated, options: &Options) -> R
         let d = Diagnostic::error(format!("`{word}` is for pictures with a stated error"));
         return Err(Stop::usage(d.note("ask for one: `--max-error 2/255`, or `render(error: 2/255)` in the scene")));
     }
-    if let Some(word) = asked.iter().find(|a| a.0.is_some() && a.0 == &args.out).map(|a| a.1)
-        .or((args.error_map.is_some() && args.error_map == args.status_map).then_some("--status-map"))
+    if let Some(word) = asked.iter().find(|a| a.0.is_some() && a.0 == &args.out).map(|a| a.1).or((args
+        .error_map
+        .is_some()
+        && args.error_map == args.status_map)
+        .then_some("--status-map"))
     {
         return Err(Stop::usage(Diagnostic::error(format!("`{word}` needs a file of its own"))));
     }

@@ -1,7 +1,7 @@
 //! What a picture took: `--stats`.
 
-use super::args::StatsForm;
 use super::accuracy;
+use super::args::StatsForm;
 use crate::render::certify::Certificate;
 use crate::render::{Crop, RayCounts};
 use serde::Serialize;

@@ -3,8 +3,8 @@
 //! Nothing here changes a bit of the picture: a fused multiply-add gives the same result from the processor and from the
 //! library that stands in for it, only faster.
 
-use super::certify;
 use super::belt::{Belt, Watchman};
+use super::certify;
 use super::certify::{LaneSampler, Sampler};
 use super::crew::{crew, useful};
 use super::footprint::{Footprint, Recorder};

@@ -3,8 +3,8 @@
 
 use super::camera::PixelGrid;
 use super::census::{Change, PrimitiveKey};
-use super::cull::{Shaft, margin};
 use super::certify::Certificate;
+use super::cull::{Shaft, margin};
 use super::dispatch::{render, render_tiles, tiles_of};
 use super::footprint::Footprint;
 use super::material::MOST_SPACES;

@@ -1,6 +1,6 @@
 //! Shades the hits of one run: points and normals first, then light by light, then colour and the rays that follow.
 
-use super::batch::{Column, Column3, HitColumns, RayBatch, load3, store3};
+use super::batch::{Column, Column3, HitColumns, RayBatch, load3, put3, store3};
 use super::bounds::Bounds;
 use super::candidates::Candidates;
 use super::cull::{Shaft, margin};
@@ -181,12 +181,9 @@ impl<E: Elem> RunOfHits<'_, E> {
                 let surface = self.world.surface::<L, false>(id, ray, at);
                 let inside = L::zero().lt(dot(surface.n, ray.1));
                 let faced = FacedBy { inside };
-                let put = |old: &Column3<E>, new: [L; 3]| select3(here, new, load3(old, g));
-                let (p, n, ns) =
-                    (put(&s.p, surface.p), put(&s.n, faced.face(surface.n)), put(&s.ns, faced.face(surface.ns)));
-                store3(&mut s.p, g, p);
-                store3(&mut s.n, g, n);
-                store3(&mut s.ns, g, ns);
+                put3(&mut s.p, g, here, surface.p);
+                put3(&mut s.n, g, here, faced.face(surface.n));
+                put3(&mut s.ns, g, here, faced.face(surface.ns));
                 let inside = L::select(inside, L::one(), L::zero());
                 L::select(here, surface.offset, L::load(&s.offset[g..])).store(&mut s.offset[g..]);
                 L::select(here, inside, L::load(&s.inside[g..])).store(&mut s.inside[g..]);

@@ -178,7 +178,10 @@ fn render(host: &mut dyn Host, a: &[Value]) -> Outcome {
         let (asked, word) = if error.is_some() { (3, "an `error`") } else { (4, "a `time`") };
         if a.given(1) {
             let fault = Fault::new(format!("a picture has {word} or an `aa`, not both"));
-            return Err(fault.note("it sends as many rays as it takes, more of them where they are needed").on(1).into());
+            return Err(fault
+                .note("it sends as many rays as it takes, more of them where they are needed")
+                .on(1)
+                .into());
         }
         if a.text(5) == "f32" {
             let fault = Fault::new(format!("a picture with {word} needs 64 bits"));
