@@ -22,7 +22,7 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
     }
     (rays.source[0], rays.len) = (NONE, 1);
     let mut everything = Candidates::default();
-    everything.gather(world, |_| true, |_, _| true);
+    everything.gather(world, usize::MAX - 1, |_| true, |_, _| true);
     let mut hits = HitColumns::<f64>::default();
     nearest::<f64, false>(world, &everything, &rays, &mut hits, &mut Way::default());
     if hits.id[0] == NONE {

@@ -197,11 +197,13 @@ impl<E: Elem> RunOfHits<'_, E> {
     /// What may stand between the hits, which lie in `points`, and each light.
     #[inline(always)]
     fn find_occluders(&self, points: &Bounds, margin: f64, occluders: &mut Vec<Candidates>) {
+        let rays = self.hits.groups.iter().map(|g| g.bits.count_ones() as usize).sum();
         occluders.resize_with(self.world.lights.len(), Candidates::default);
         for (light, occluders) in self.world.lights.iter().zip(occluders) {
             let shaft = Shaft::new(points, light.at, margin);
             occluders.gather(
                 self.world,
+                rays,
                 #[inline(always)]
                 |b| shaft.may_meet(b),
                 |n, offset| shaft.may_cross(points, n, offset),

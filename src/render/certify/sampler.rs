@@ -45,7 +45,8 @@ impl<'w> Sampler<'w> {
         let frustum = self.grid.frustum(rect, margin);
         let grid = &self.grid;
         let candidates = &mut self.tracer.candidates;
-        candidates.gather(self.world, |b| frustum.may_meet(b), |n, o| grid.may_meet_plane(rect, n, o, margin));
+        let plane = |n, offset| grid.may_meet_plane(rect, n, offset, margin);
+        candidates.gather(self.world, points.len(), |b| frustum.may_meet(b), plane);
         if candidates.is_empty() {
             (0..points.len()).for_each(|i| seen(i, self.world.background));
             return;
