@@ -310,7 +310,7 @@ impl<E: Elem> RunOfHits<'_, E> {
                 continue;
             }
             *shadow_rays += front.bits().count_ones() as u64;
-            let rays = ShadowRays { source, part, outward, o, l, distance, touched: &light.touched };
+            let rays = ShadowRays { source, part, outward, o, l, distance, light: number, touched: &light.touched };
             let seen = occlusion(self.world, &s.occluders[number], &rays, front, &mut s.shadow, &mut s.recorder);
             let arrives: [L; 3] = three!(c => L::select(front, color[c] * seen[c], zero));
             let lambert = L::select(front, cosine, zero);
