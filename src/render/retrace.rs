@@ -232,7 +232,7 @@ impl<'w> Difference<'w> {
         let planes = || w.unbounded.iter().filter(|p| c.added_planes.contains(&p.id));
         let some = |keep: &dyn Fn(&super::bounds::Bounds) -> bool| {
             let mut found = false;
-            c.added.gather(keep, |_| {
+            c.added.gather(usize::MAX, keep, |_| {
                 found = true;
                 false
             });
