@@ -80,6 +80,9 @@ pub fn line(c: &Certificate) -> String {
         0 => "0 bounded".to_string(),
         n => format!("{} bounded at {} %", of(n), trimmed(100.0 * c.accuracy.confidence, 7)),
     };
+    if s.open == s.pixels() {
+        return "no error can be stated: the time was too short, and all pixels are open".into();
+    }
     let (error, proved) = (fraction(c.reached / 255.0), of(s.proved));
     format!("max error {error}: {proved} proved, {bounded}, {} estimated, {} open", of(s.estimated), of(s.open))
 }

@@ -1,12 +1,12 @@
 //! The whole way from an accuracy to a picture: one round where an error is asked for, rounds from coarse to fine where time is
 //! short. What a round has brought to its error stays, whatever becomes of the next.
 
-use super::super::dispatch;
 use super::super::options::{Options, Progress, RayCounts, Rendered, Silent};
 use super::super::world::World;
+use super::sketch::{Pass, Sketch};
 use super::{Control, Pixel, Summary, Target, refine};
 use crate::film::Film;
-use crate::scene::{Accuracy, AntiAliasing};
+use crate::scene::Accuracy;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -26,7 +26,12 @@ pub struct Certificate {
 
 /// Errors of the rounds under a time limit, in codes: each takes about as long as all before it. A smaller one than the last is
 /// only tried if it is asked for.
-const ROUNDS: [f64; 4] = [16.0, 4.0, 2.0, 1.0];
+const ROUNDS: [f64; 4] = [16.0, 4.0, 2.0, LAST];
+/// The last of them, where none is asked for.
+const LAST: f64 = 1.0;
+
+/// Where nothing is certain yet: each takes about as long as all before it, and halves what is visible of the error.
+const PASSES: [Pass; 3] = [Pass { rays: 16, codes: 8 }, Pass { rays: 64, codes: 4 }, Pass { rays: 256, codes: 3 }];
 
 /// How often it is looked whether work is to end: unnoticeable, and it costs nothing.
 const GLANCE: Duration = Duration::from_millis(2);
@@ -41,30 +46,51 @@ pub(in crate::render) fn render(
 ) -> Option<Rendered> {
     // A time too long for the clock is no limit.
     let deadline = accuracy.time.and_then(|t| Instant::now().checked_add(Duration::from_secs_f64(t)));
-    let mut picture = Picture::new(world, options, accuracy);
-    match deadline {
+    let picture = match deadline {
         None => {
-            let codes = picture.asked();
-            picture.round(codes, Control { progress, cancel });
+            let mut picture = Picture::new(world, options, accuracy);
+            picture.round(accuracy.error.map_or(LAST, |e| 255.0 * e), Control { progress, cancel });
+            picture
         }
-        Some(deadline) => {
-            picture.sketch(cancel)?;
-            let over = AtomicBool::new(false);
-            thread::scope(|s| {
-                let watchman = s.spawn(|| {
-                    while !over.load(Relaxed) && !cancel.load(Relaxed) && Instant::now() < deadline {
-                        thread::park_timeout(GLANCE);
-                    }
-                    over.store(true, Relaxed);
-                });
-                // Pixels are told of once, and nobody knows in which round they come to their end.
-                picture.rounds(Control { progress: &Silent, cancel: &over });
-                over.store(true, Relaxed);
-                watchman.thread().unpark();
-            });
-        }
-    }
+        Some(deadline) => until(deadline, world, options, accuracy, cancel)?,
+    };
     if cancel.load(Relaxed) { None } else { Some(picture.finished()) }
+}
+
+/// As good as it gets until then; `None` where `cancel` was set before there was a picture.
+fn until<'w>(
+    deadline: Instant,
+    world: &'w World,
+    options: &'w Options,
+    accuracy: Accuracy,
+    cancel: &AtomicBool,
+) -> Option<Picture<'w>> {
+    let mut sketch = Sketch::new(world, options, cancel)?;
+    let over = AtomicBool::new(false);
+    let picture = thread::scope(|s| {
+        let watchman = s.spawn(|| {
+            while !over.load(Relaxed) && !cancel.load(Relaxed) && Instant::now() < deadline {
+                thread::park_timeout(GLANCE);
+            }
+            over.store(true, Relaxed);
+        });
+        let is_whole = PASSES.iter().all(|pass| sketch.pass(*pass, &over));
+        let mut picture = Picture::begun(sketch, accuracy);
+        if is_whole {
+            // Pixels are told of once, and nobody knows in which round they come to their end.
+            picture.rounds(Control { progress: &Silent, cancel: &over });
+        }
+        over.store(true, Relaxed);
+        watchman.thread().unpark();
+        picture
+    });
+    Some(picture)
+}
+
+/// The errors of the rounds, in codes: the last is the one asked for.
+fn rounds(accuracy: Accuracy) -> impl Iterator<Item = f64> {
+    let asked = accuracy.error.map_or(LAST, |e| 255.0 * e);
+    ROUNDS.into_iter().filter(move |&codes| codes > asked).chain([asked])
 }
 
 /// A picture on its way.
@@ -84,30 +110,18 @@ impl<'w> Picture<'w> {
         Picture { world, options, accuracy, reached: 255.0, pixels, rays: RayCounts::default() }
     }
 
-    /// The error of the last round, in codes.
-    fn asked(&self) -> f64 {
-        self.accuracy.error.map_or(ROUNDS[ROUNDS.len() - 1], |e| 255.0 * e)
-    }
-
-    /// One ray a pixel: something to show of every one, whatever the time allows.
-    fn sketch(&mut self, cancel: &AtomicBool) -> Option<()> {
-        let one = Options { aa: AntiAliasing::Off, accuracy: None, ..self.options.clone() };
-        let rendered = dispatch::render(self.world, &one, &Silent, cancel)?;
-        self.rays = rendered.rays;
-        for (pixel, light) in self.pixels.iter_mut().zip(&rendered.film.pixels) {
-            pixel.value = light.map(f64::from);
-        }
-        Some(())
+    /// With something to show of every pixel.
+    fn begun(sketch: Sketch<'w>, accuracy: Accuracy) -> Picture<'w> {
+        let Sketch { world, options, film, rays, .. } = sketch;
+        let pixel = |light: &[f32; 3]| Pixel { value: light.map(f64::from), ..Pixel::unknown() };
+        let pixels = film.pixels.iter().map(pixel).collect();
+        let reached = rounds(accuracy).next().unwrap_or(LAST);
+        Picture { world, options, accuracy, reached, pixels, rays }
     }
 
     /// One round after another, as far as it goes.
     fn rounds(&mut self, control: Control<'_>) {
-        let asked = self.asked();
-        let coarse = ROUNDS.into_iter().filter(|&codes| codes > asked);
-        for (i, codes) in coarse.chain([asked]).enumerate() {
-            if i == 0 {
-                self.reached = codes;
-            }
+        for codes in rounds(self.accuracy) {
             if !self.round(codes, control) {
                 return;
             }

@@ -18,6 +18,7 @@ mod pixel;
 mod polygon;
 mod sampler;
 mod sheet;
+mod sketch;
 mod sobol;
 mod study;
 mod summary;
