@@ -4,7 +4,7 @@
 use super::super::options::{Options, Progress, RayCounts, Rendered, Silent};
 use super::super::world::World;
 use super::sketch::{Pass, Sketch};
-use super::{Control, Pixel, Summary, Target, refine};
+use super::{Control, Pixel, Status, Summary, Target, refine};
 use crate::film::Film;
 use crate::scene::Accuracy;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -101,13 +101,18 @@ struct Picture<'w> {
     reached: f64,
     pixels: Vec<Pixel>,
     rays: RayCounts,
+    /// What it looked like before anything was proved.
+    sketch: Option<Film>,
 }
+
+/// From what error on, in codes, the sketch's value of a pixel is a better guess than the middle of what is proved of it.
+const COARSE: f64 = 2.0;
 
 impl<'w> Picture<'w> {
     fn new(world: &'w World, options: &'w Options, accuracy: Accuracy) -> Picture<'w> {
         let part = options.crop_or_all();
         let pixels = vec![Pixel::unknown(); part.width as usize * part.height as usize];
-        Picture { world, options, accuracy, reached: 255.0, pixels, rays: RayCounts::default() }
+        Picture { world, options, accuracy, reached: 255.0, pixels, rays: RayCounts::default(), sketch: None }
     }
 
     /// With something to show of every pixel.
@@ -116,7 +121,7 @@ impl<'w> Picture<'w> {
         let pixel = |light: &[f32; 3]| Pixel { value: light.map(f64::from), ..Pixel::unknown() };
         let pixels = film.pixels.iter().map(pixel).collect();
         let reached = rounds(accuracy).next().unwrap_or(LAST);
-        Picture { world, options, accuracy, reached, pixels, rays }
+        Picture { world, options, accuracy, reached, pixels, rays, sketch: Some(film) }
     }
 
     /// One round after another, as far as it goes.
@@ -130,8 +135,7 @@ impl<'w> Picture<'w> {
 
     /// Brings all pixels to an error, in codes; whether it got through.
     fn round(&mut self, codes: f64, control: Control<'_>) -> bool {
-        let (quantum, confidence) = (255.0 * self.options.quantum, self.accuracy.confidence);
-        let target = Target { quantum, confidence, ..Target::new(codes) };
+        let target = self.target(codes);
         let is_whole = refine(self.world, self.options, &target, &mut self.pixels, control);
         if is_whole {
             self.reached = codes;
@@ -139,7 +143,23 @@ impl<'w> Picture<'w> {
         is_whole
     }
 
-    fn finished(self) -> Rendered {
+    fn target(&self, codes: f64) -> Target {
+        let (quantum, confidence) = (255.0 * self.options.quantum, self.accuracy.confidence);
+        Target { quantum, confidence, ..Target::new(codes) }
+    }
+
+    /// Puts the sketch's values where only a wide interval is proved, as far as they keep the error.
+    fn take_guesses(&mut self) {
+        let (Some(sketch), target) = (self.sketch.take(), self.target(self.reached)) else { return };
+        for (pixel, guess) in self.pixels.iter_mut().zip(&sketch.pixels) {
+            if pixel.status == Status::Proved && pixel.codes > COARSE {
+                *pixel = pixel.with_value(guess.map(f64::from), &target).unwrap_or(*pixel);
+            }
+        }
+    }
+
+    fn finished(mut self) -> Rendered {
+        self.take_guesses();
         let Picture { options, accuracy, reached, pixels, mut rays, .. } = self;
         let part = options.crop_or_all();
         let summary = Summary::of(&pixels, reached);

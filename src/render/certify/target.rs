@@ -1,6 +1,6 @@
 //! What is asked of a picture, and what is answered: errors are judged after the sRGB curve, in codes.
 
-use super::super::bounds::larger;
+use super::super::bounds::{larger, smaller};
 use crate::scene::color::{decode_srgb, encode_srgb};
 
 /// What rounding may add to an error, in codes: the curve's two formulas, by which this is judged and that is written, meet to 1e-7
@@ -102,6 +102,18 @@ impl Pixel {
         self.status != Status::Open && self.codes <= codes
     }
 
+    /// It with another value within its interval, or at the end of that; `None` where the error of that is beyond the target.
+    pub(super) fn with_value(&self, value: [f64; 3], target: &Target) -> Option<Pixel> {
+        let (mut at, mut half_width, mut codes) = (self.value, self.half_width, 0.0);
+        for c in 0..3 {
+            let (lo, hi) = (self.value[c] - self.half_width[c], self.value[c] + self.half_width[c]);
+            at[c] = larger(smaller(value[c], hi), lo);
+            half_width[c] = larger(hi - at[c], at[c] - lo);
+            codes = larger(codes, target.error(at[c], [lo, hi]));
+        }
+        (codes <= target.codes).then_some(Pixel { value: at, half_width, codes, ..*self })
+    }
+
     /// What is known after another attempt. What fell short of its target replaces nothing that is certain or likely.
     pub(super) fn and_then(self, found: Pixel) -> Pixel {
         let falls_short = found.status == Status::Open && (self.status != Status::Open || self.codes <= found.codes);
@@ -154,6 +166,17 @@ mod tests {
         assert!(exact.error(0.5, [0.5, 0.5]) <= CURVE);
         let (value, half) = middle([0.1, 0.2]);
         assert!(code(value) - code(0.1) - (code(0.2) - code(value)) < 1e-9 && half > 0.05);
+    }
+
+    #[test]
+    fn another_value_stays_in_the_interval() {
+        let pixel = Pixel { value: [0.5; 3], half_width: [0.02; 3], status: Status::Proved, ..Pixel::unknown() };
+        let wide = Target::new(16.0);
+        let moved = pixel.with_value([0.51, 0.5, 0.9], &wide).unwrap();
+        assert_eq!((moved.value[0], moved.value[1], moved.status), (0.51, 0.5, Status::Proved));
+        assert!((moved.value[2] - 0.52).abs() < 1e-15 && (moved.half_width[2] - 0.04).abs() < 1e-15);
+        assert!(moved.codes > wide.error(0.5, [0.48, 0.52]) && moved.codes <= 16.0);
+        assert!(pixel.with_value([0.9; 3], &Target::new(3.0)).is_none(), "its other end would be too far");
     }
 
     #[test]
