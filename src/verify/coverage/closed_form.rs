@@ -54,7 +54,7 @@ fn asks() -> Vec<Ask> {
 
 fn run(size: Size) -> Outcome {
     let mut outcome = Outcome::default();
-    let seeds = size.pick(10, 2_000);
+    let seeds = size.pick(10, 600);
     for Ask { what, target } in asks() {
         // Samples alone take about a hundred times as long.
         let seeds = if target.certificates { seeds } else { seeds / 10 };
