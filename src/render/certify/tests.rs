@@ -3,7 +3,6 @@
 
 use super::super::dispatch::sampler;
 use super::bound::Bound;
-use super::sketch::{Pass, Sketch};
 use super::{Certifier, Control, Pixel, Status, Summary, Target, certify, code, refine};
 use crate::math::hash::KeyedHash;
 use crate::math::{Affine, Form};
@@ -98,7 +97,7 @@ fn plain(c: [f64; 3]) -> Look {
 }
 
 /// Every shape that certificates cover, some turned or stretched, on a checkered floor between a mirror and panes, under two lights.
-fn every_shape() -> Scene {
+pub(super) fn every_shape() -> Scene {
     let mut b = Builder::new();
     let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
     let floor = PatternKind::Checker { a: x, b: y, size: 10.0 };
@@ -436,42 +435,4 @@ fn what_keeps_its_error_is_left_alone() {
     }
     assert!(fell_short > 0, "a budget that is too small for some");
     assert!(before.iter().filter(|p| !p.keeps(3.0)).count() > fell_short, "but not for all");
-}
-
-#[test]
-fn every_pass_of_a_sketch_brings_it_closer() {
-    let scene = every_shape();
-    let world = World::build(&scene, &scene.cameras[0]);
-    let options = Options { width: 96, height: 54, ..Options::from_settings(&scene.settings) };
-    let truth = certify(&world, &options, &Target::new(1.0));
-    let off = |sketch: &Sketch<'_>| {
-        let pixels = sketch.film.pixels.iter().zip(&truth);
-        let square = |c: usize, p: &[f32; 3], t: &Pixel| {
-            let off = code(p[c] as f64) - code(t.value[c]);
-            off * off
-        };
-        let sum: f64 = pixels.map(|(p, t)| (0..3).map(|c| square(c, p, t)).sum::<f64>()).sum();
-        (sum / (3 * truth.len()) as f64).sqrt()
-    };
-    let mut sketch = Sketch::new(&world, &options, &NEVER).unwrap();
-    let mut before = off(&sketch);
-    let mut rays = sketch.rays.camera;
-    assert_eq!(rays, 96 * 54);
-    for (n, codes) in [(16, 8), (64, 4), (256, 3)] {
-        assert!(sketch.pass(Pass { rays: n, codes }, &NEVER));
-        let now = off(&sketch);
-        assert!(now < 0.7 * before, "{n} rays: {before} to {now}");
-        assert!(sketch.rays.camera > rays && sketch.rays.camera < rays + 96 * 54 * n as u64, "edges, and only they");
-        (before, rays) = (now, sketch.rays.camera);
-    }
-    // On several threads the same.
-    let several = Options { threads: Some(3), ..options.clone() };
-    let mut other = Sketch::new(&world, &several, &NEVER).unwrap();
-    for (rays, codes) in [(16, 8), (64, 4), (256, 3)] {
-        other.pass(Pass { rays, codes }, &NEVER);
-    }
-    assert!(other.film == sketch.film);
-    // And nothing is done to a row that isn't reached.
-    let cancelled = AtomicBool::new(true);
-    assert!(!other.pass(Pass { rays: 4, codes: 0 }, &cancelled) && other.film == sketch.film);
 }

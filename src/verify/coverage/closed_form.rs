@@ -259,15 +259,3 @@ fn random_point(draw: &mut Draw) -> [f64; 2] {
     let half = 0.5 * SIDE as f64;
     [draw.between(-half, half), draw.between(-half, half)]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stated_errors_are_kept() {
-        let outcome = run(Size::Quick);
-        assert!(outcome.is_within(), "{:#?}", outcome);
-        assert!(outcome.cases > 50_000, "{}", outcome.cases);
-    }
-}
