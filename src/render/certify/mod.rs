@@ -5,12 +5,14 @@
 //! can tell apart is charged. See [`Certifier::region`].
 
 mod bound;
+mod budget;
 mod bundle;
 mod certifier;
 mod coat;
 mod estimate;
 mod leaves;
 mod lit;
+mod looks;
 mod met;
 mod picture;
 mod pixel;

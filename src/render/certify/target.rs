@@ -1,6 +1,7 @@
 //! What is asked of a picture, and what is answered: errors are judged after the sRGB curve, in codes.
 
 use super::super::bounds::larger;
+use super::bound::Span;
 use crate::scene::color::{decode_srgb, encode_srgb};
 
 /// What is asked of every pixel.
@@ -26,18 +27,44 @@ impl Target {
         Target { codes, quantum: 1.0, confidence: 0.999, evaluations: 256, samples: 1 << 17, certificates: true }
     }
 
-    /// What is left of the error when the rounding of written codes is taken out.
+    /// What is left of the error when the rounding of written codes is taken out, and that of light to the film's numbers: 24
+    /// bits, and a code changes by less than 255 of its relative change.
     pub(super) fn before_rounding(&self) -> f64 {
-        larger(self.codes - 0.5 * self.quantum, 0.0)
+        larger(self.codes - 0.5 * self.quantum - 256.0 / (1u32 << 24) as f64, 0.0)
     }
 
     /// The largest distance, in codes, between the code written for `value` and any value from `lo` to `hi`.
-    pub(super) fn error(&self, value: f64, [lo, hi]: [f64; 2]) -> f64 {
+    pub(super) fn error(&self, value: f64, [lo, hi]: Span) -> f64 {
+        self.apart(value, [code(lo), code(hi)])
+    }
+
+    /// The same, for codes from `lo` to `hi`.
+    fn apart(&self, value: f64, [lo, hi]: Span) -> f64 {
         let code = code(value);
         let written = if self.quantum > 0.0 { (code / self.quantum).round() * self.quantum } else { code };
-        larger(self::code(hi) - written, written - self::code(lo))
+        larger(hi - written, written - lo)
+    }
+
+    /// The value in an interval that is about half-way between its codes, as it is stored, and its error.
+    pub(super) fn settled(&self, [lo, hi]: Span) -> (f64, f64) {
+        let codes = [code(lo), code(hi)];
+        // Where it is short, the curve is straight.
+        let value = match codes[1] - codes[0] > STRAIGHT && lo >= 0.0 && hi <= 1.0 {
+            true => decode_srgb((codes[0] + codes[1]) * (0.5 / 255.0)),
+            false => 0.5 * lo + 0.5 * hi,
+        };
+        let value = stored(value);
+        (value, self.apart(value, codes))
     }
 }
+
+/// Light as the film stores it.
+pub(super) fn stored(v: f64) -> f64 {
+    v as f32 as f64
+}
+
+/// So many codes further on, the curve bends by less than a hundredth of a code: by c²/(8·255·0.42·2.4) at most, where it is darkest.
+const STRAIGHT: f64 = 0.25;
 
 /// How sure the error of a pixel is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,28 +130,14 @@ pub fn code(v: f64) -> f64 {
     255.0 * encode_srgb(v.clamp(0.0, 1.0))
 }
 
-/// The value in an interval that is half-way between its codes, and how far its ends are.
-pub(super) fn middle([lo, hi]: [f64; 2]) -> (f64, f64) {
-    let value = match lo >= 0.0 && hi <= 1.0 {
-        true => decode_srgb((code(lo) + code(hi)) * (0.5 / 255.0)).clamp(lo, hi),
-        false => 0.5 * lo + 0.5 * hi,
-    };
-    (value, larger(value - lo, hi - value))
-}
-
-/// How much more light than `v` a channel may hold without its code growing by more than `codes`.
+/// How much more light than `v` a channel may hold without its code growing by more than `codes`: a trifle less.
 pub(super) fn room(v: f64, codes: f64) -> f64 {
     let v = v.clamp(0.0, 1.0);
-    let (mut least, mut most) = (0.0, 1.0);
-    for _ in 0..40 {
-        let middle = 0.5 * (least + most);
-        if code(v + middle) - code(v) <= codes && v + middle <= 1.0 {
-            least = middle;
-        } else {
-            most = middle;
-        }
+    match code(v) + codes {
+        // Beyond the last code all light is the same.
+        most if most >= 255.0 => 1.0,
+        most => larger(decode_srgb(most / 255.0) - v, 0.0) * (1.0 - 1.0 / (1u64 << 30) as f64),
     }
-    least
 }
 
 #[cfg(test)]
@@ -137,8 +150,15 @@ mod tests {
         assert!((target.error(0.5, [0.5, 0.5]) - (code(0.5) - code(0.5).round()).abs()).abs() < 1e-12);
         let exact = Target { quantum: 0.0, ..target };
         assert_eq!(exact.error(0.5, [0.5, 0.5]), 0.0);
-        let (value, half) = middle([0.1, 0.2]);
-        assert!(code(value) - code(0.1) - (code(0.2) - code(value)) < 1e-9 && half > 0.05);
+        for (lo, hi) in [(0.1, 0.2), (0.0, 0.001), (0.003, 0.00302), (0.9, 0.9001), (-1.0, 0.5), (0.5, 3.0)] {
+            let (value, error) = exact.settled([lo, hi]);
+            let half = 0.5 * (code(hi) - code(lo));
+            assert!(
+                error >= half - 1e-9 && (lo < 0.0 || hi > 1.0 || error < half + 0.01),
+                "{lo} {hi}: {value} {error}"
+            );
+            assert_eq!(value, value as f32 as f64);
+        }
     }
 
     #[test]
@@ -146,5 +166,9 @@ mod tests {
         let rooms = [0.0, 0.01, 0.2, 0.9].map(|v| room(v, 2.0));
         assert!(rooms.windows(2).all(|w| w[1] > w[0]), "{rooms:?}");
         assert!((code(0.2 + rooms[2]) - code(0.2) - 2.0).abs() < 1e-6);
+        assert!(
+            (0..1000)
+                .all(|i| code(i as f64 * 0.00099 + room(i as f64 * 0.00099, 0.5)) - code(i as f64 * 0.00099) <= 0.5)
+        );
     }
 }
