@@ -8,8 +8,6 @@ use super::super::pattern::PatternNode;
 use super::super::shape::Primitive;
 use super::super::world::World;
 use super::bound::{Bound, Span, hull};
-use super::bundle::Bundle;
-use super::polygon::Polygon;
 use super::study::Study;
 use crate::math::Form;
 
@@ -39,25 +37,21 @@ impl<'w> Certifier<'w> {
     /// What is known of the light in a rectangle of the picture, in pixels: left, top, right, bottom. ξ grows to the right and η
     /// downwards.
     pub fn region(&self, rect: [f64; 4]) -> Bound {
-        self.studied(rect, false)
+        self.looked_at(rect).0
     }
 
     /// One form for the light all over a rectangle, if there is one: quicker than [`region`](Certifier::region) where there
     /// is none.
     pub fn form(&self, rect: [f64; 4]) -> Option<[Form; 3]> {
-        self.studied(rect, true).form.filter(|form| form.iter().all(|f| f.is_known()))
+        let mut study = Study::new(self);
+        study.undivided = true;
+        study.rectangle(rect).form.filter(|form| form.iter().all(|f| f.is_known()))
     }
 
-    fn studied(&self, rect: [f64; 4], undivided: bool) -> Bound {
-        let [left, top, right, bottom] = rect;
-        let x = Form { x: 0.5 * (right - left), ..Form::between(0.5 * (left + right), 0.5 * (left + right)) };
-        let y = Form { y: 0.5 * (bottom - top), ..Form::between(0.5 * (top + bottom), 0.5 * (top + bottom)) };
-        let (o, d) = self.grid.ray::<Form>(x, y);
+    /// As [`region`](Certifier::region); and whether parts of it are best rows of its whole width.
+    pub(super) fn looked_at(&self, rect: [f64; 4]) -> (Bound, bool) {
         let mut study = Study::new(self);
-        study.undivided = undivided;
-        let square = Polygon::square();
-        let bound = study.seen(&square, &Bundle { o, d, start: None, rect: Some(rect) }, self.depth);
-        bound.knowing(&square, self.ceiling(self.depth))
+        (study.rectangle(rect), study.in_rows)
     }
 
     /// Where the light surely lies that a ray sees which goes on `depth` times at most.

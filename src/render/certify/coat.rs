@@ -151,6 +151,7 @@ impl<'c> Study<'c> {
                 let level: f64 = at.p.iter().filter_map(|c| c.fixed).map(|x| (x / size).floor()).sum();
                 let w = at.w.times(*size);
                 let found = parity(p, u, v, w).or_else(|| parity(p, v, u, w))?;
+                self.in_rows = true;
                 let sign = if (0.5 * level).floor() * 2.0 == level { 1.0 } else { -1.0 };
                 Some(alternating(p, shade, (a, b), sign, &found))
             }

@@ -6,7 +6,7 @@
 
 use super::super::bounds::{larger, smaller};
 use super::bound::{Bound, Span};
-use super::target::{Target, middle, room};
+use super::target::{Target, room};
 use crate::math::fun;
 
 /// A region of a pixel.
@@ -19,6 +19,20 @@ pub struct Leaf {
     pub bound: Bound,
     /// Its share of what isn't known, in codes.
     pub width: f64,
+    /// Whether it is better divided into rows than into quarters.
+    pub in_rows: bool,
+}
+
+/// Which leaves are best sampled, and what that costs.
+pub struct Sketch {
+    /// Leaves, the widest first.
+    order: Vec<usize>,
+    /// How many of them are sampled.
+    sampled: usize,
+    /// About how many samples keep the target.
+    pub samples: f64,
+    /// By how much light each channel may be off.
+    room: [f64; 3],
 }
 
 /// A plan for samples.
@@ -45,6 +59,17 @@ impl Leaf {
             _ => hi - lo,
         }
     }
+
+    /// How far the middle of its mean may be off in the pixel's.
+    fn half(&self, c: usize) -> f64 {
+        let [lo, hi] = self.mean(c);
+        0.5 * self.share * (hi - lo)
+    }
+
+    /// Its need for samples: by how much they may move the pixel's mean, over the room there is.
+    fn weight(&self, room: &[f64; 3]) -> f64 {
+        (0..3).map(|c| self.share * self.spread(c) / room[c]).fold(0.0, larger)
+    }
 }
 
 /// Bounds of the pixel's mean, by channel.
@@ -61,69 +86,76 @@ pub fn total(leaves: &[Leaf]) -> [Span; 3] {
     })
 }
 
-/// The cheapest plan found that keeps the target with up to `most` samples: the widest leaves are sampled, in proportion to their
-/// width.
-pub fn plan(leaves: &[Leaf], target: &Target, most: u32) -> Option<Plan> {
-    let log = 0.5 * fun::ln(2.0 * 3.0 / (1.0 - target.confidence));
-    let known = total(leaves);
-    let codes = target.before_rounding();
-    // The curve is steepest where it is darkest.
-    let room = known.map(|k| room(k[0], codes));
-    if !room.iter().all(|r| *r > 0.0) {
-        return None;
-    }
-    let weight = |leaf: &Leaf| (0..3).map(|c| leaf.share * leaf.spread(c) / room[c]).fold(0.0, larger);
-    let mut order: Vec<usize> = (0..leaves.len()).collect();
-    order.sort_by(|&a, &b| leaves[b].width.total_cmp(&leaves[a].width).then(a.cmp(&b)));
-    let halves = |leaf: &Leaf, c: usize| {
-        let [lo, hi] = leaf.mean(c);
-        0.5 * leaf.share * (hi - lo)
-    };
-    let mut settled: [f64; 3] = [0, 1, 2].map(|c| leaves.iter().map(|l| halves(l, c)).sum());
-    let (mut weights, mut best) = (0.0, None::<(usize, f64, f64)>);
-    for (k, &i) in order.iter().enumerate() {
-        settled = [0, 1, 2].map(|c| settled[c] - halves(&leaves[i], c));
-        weights += weight(&leaves[i]);
-        let left = (0..3).map(|c| 1.0 - larger(settled[c], 0.0) / room[c]).fold(1.0, smaller);
-        if !(left > 0.05) {
-            continue; // what isn't sampled leaves too little
+/// The logarithm in Hoeffding's inequality, for both sides of three channels together.
+fn log(target: &Target) -> f64 {
+    0.5 * fun::ln(2.0 * 3.0 / (1.0 - target.confidence))
+}
+
+impl Sketch {
+    /// The cheapest found that keeps the target: the widest leaves are sampled, in proportion to their width.
+    pub fn new(leaves: &[Leaf], target: &Target) -> Option<Sketch> {
+        let log = log(target);
+        let codes = target.before_rounding();
+        // The curve is steepest where it is darkest.
+        let room = total(leaves).map(|k| room(k[0], codes));
+        if !room.iter().all(|r| *r > 0.0) {
+            return None;
         }
-        // n samples shared out by weight leave √(log·weights²/n) of the room.
-        let n = larger(log * weights * weights / (left * left), (k + 1) as f64);
-        if n + (k as f64) < best.map_or(f64::INFINITY, |b| b.1) {
-            best = Some((k + 1, n + k as f64, n));
-        }
-    }
-    let (sampled, _, n) = best?;
-    if !(n <= most as f64) {
-        return None;
-    }
-    let weights: f64 = order[..sampled].iter().map(|&i| weight(&leaves[i])).sum();
-    let mut samples = vec![0; leaves.len()];
-    for &i in &order[..sampled] {
-        samples[i] = larger((n * weight(&leaves[i]) / weights).ceil(), 1.0) as u32;
-    }
-    let total = samples.iter().sum();
-    let half_width = [0, 1, 2].map(|c| {
-        let (mut squares, mut rest) = (0.0, 0.0);
-        for (leaf, &n) in leaves.iter().zip(&samples) {
-            match n {
-                0 => rest += halves(leaf, c),
-                n => {
-                    let spread = leaf.share * leaf.spread(c);
-                    squares += spread * spread / n as f64;
-                }
+        let mut order: Vec<usize> = (0..leaves.len()).collect();
+        order.sort_by(|&a, &b| leaves[b].width.total_cmp(&leaves[a].width).then(a.cmp(&b)));
+        let mut settled: [f64; 3] = [0, 1, 2].map(|c| leaves.iter().map(|l| l.half(c)).sum());
+        let (mut weights, mut best) = (0.0, None::<(usize, f64, f64)>);
+        for (k, &i) in order.iter().enumerate() {
+            settled = [0, 1, 2].map(|c| settled[c] - leaves[i].half(c));
+            weights += leaves[i].weight(&room);
+            let left = (0..3).map(|c| 1.0 - larger(settled[c], 0.0) / room[c]).fold(1.0, smaller);
+            if !(left > 0.05) {
+                continue; // what isn't sampled leaves too little
+            }
+            // n samples shared out by weight leave √(log·weights²/n) of the room.
+            let n = larger(log * weights * weights / (left * left), (k + 1) as f64);
+            if n + (k as f64) < best.map_or(f64::INFINITY, |b| b.1) {
+                best = Some((k + 1, n + k as f64, n));
             }
         }
-        // A few roundings of each term.
-        (rest + (log * squares).sqrt()) * (1.0 + 1.0 / (1u64 << 30) as f64)
-    });
-    (total <= most && (0..3).all(|c| half_width[c] <= room[c])).then_some(Plan { samples, total, half_width })
+        let (sampled, _, samples) = best?;
+        Some(Sketch { order, sampled, samples, room })
+    }
+
+    /// The plan in numbers; `None` where so many samples don't suffice.
+    pub fn plan(&self, leaves: &[Leaf], target: &Target, most: u32) -> Option<Plan> {
+        if !(self.samples <= most as f64) {
+            return None;
+        }
+        let sampled = &self.order[..self.sampled];
+        let weights: f64 = sampled.iter().map(|&i| leaves[i].weight(&self.room)).sum();
+        let mut samples = vec![0; leaves.len()];
+        for &i in sampled {
+            samples[i] = larger((self.samples * leaves[i].weight(&self.room) / weights).ceil(), 1.0) as u32;
+        }
+        let total = samples.iter().sum();
+        let half_width = [0, 1, 2].map(|c| {
+            let (mut squares, mut rest) = (0.0, 0.0);
+            for (leaf, &n) in leaves.iter().zip(&samples) {
+                match n {
+                    0 => rest += leaf.half(c),
+                    n => {
+                        let spread = leaf.share * leaf.spread(c);
+                        squares += spread * spread / n as f64;
+                    }
+                }
+            }
+            // A few roundings of each term.
+            (rest + (log(target) * squares).sqrt()) * (1.0 + 1.0 / (1u64 << 30) as f64)
+        });
+        let holds = total <= most && (0..3).all(|c| half_width[c] <= self.room[c]);
+        holds.then_some(Plan { samples, total, half_width })
+    }
 }
 
 /// The value in the middle of what is known, its half widths, and the error of its codes.
 pub fn judged(known: [Span; 3], target: &Target) -> ([f64; 3], [f64; 3], f64) {
-    let both = known.map(middle);
-    let codes = (0..3).map(|c| target.error(both[c].0, known[c])).fold(0.0, larger);
-    (both.map(|b| b.0), both.map(|b| b.1), codes)
+    let each = known.map(|k| target.settled(k));
+    let half = |c: usize| larger(each[c].0 - known[c][0], known[c][1] - each[c].0);
+    (each.map(|e| e.0), [0, 1, 2].map(half), each.iter().fold(0.0, |m, e| larger(m, e.1)))
 }

@@ -6,12 +6,14 @@
 
 mod asked;
 mod bound;
+mod budget;
 mod bundle;
 mod certifier;
 mod coat;
 mod estimate;
 mod leaves;
 mod lit;
+mod looks;
 mod met;
 mod picture;
 mod pixel;

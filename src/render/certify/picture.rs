@@ -6,6 +6,7 @@ use super::super::dispatch::sampler;
 use super::super::options::{Crop, Options, Progress, Silent};
 use super::super::world::World;
 use super::bound::Span;
+use super::budget::affordable;
 use super::certifier::Certifier;
 use super::leaves::judged;
 use super::sampler::Sampler;
@@ -43,6 +44,7 @@ pub fn certify(world: &World, options: &Options, target: &Target) -> Vec<Pixel> 
 /// before. Bits depend on the world, the options and all targets so far, on nothing else, unless the work is cancelled.
 pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [Pixel], control: Control<'_>) -> bool {
     let certifier = Certifier::new(world, options);
+    let affordable = affordable(&certifier, options, target, control.cancel);
     let blocks = blocks(options, pixels);
     let next = AtomicUsize::new(0);
     crew(useful(options.threads, blocks.len()), || {
@@ -51,6 +53,7 @@ pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [P
             sampler: &mut *sampler(world, options, control.cancel),
             picture: [options.width, options.height],
             target,
+            affordable,
             cancel: control.cancel,
             spent: 0,
         };
@@ -125,6 +128,8 @@ struct Work<'w> {
     sampler: &'w mut dyn Sampler,
     picture: [u32; 2],
     target: &'w Target,
+    /// The most samples of a pixel that certainty may cost.
+    affordable: u32,
     cancel: &'w AtomicBool,
     /// Looks at regions of several pixels that no pixel was charged for yet.
     spent: u32,
@@ -141,7 +146,7 @@ impl Work<'_> {
             return;
         }
         if side == 1 {
-            let pixel = self.certifier.pixel(self.sampler, [x, y], self.target);
+            let pixel = self.certifier.pixel(self.sampler, [x, y], self.target, self.affordable);
             return self.put(block, [x, y], pixel);
         }
         // Squares that reach beyond the picture are looked at in parts.
@@ -182,6 +187,8 @@ fn all_proved(form: [Form; 3], side: u32, target: &Target) -> Option<Vec<Pixel>>
         return None;
     }
     let mut pixels = Vec::with_capacity((side * side) as usize);
+    // Many are the same: background, and what lies in the shadow.
+    let (mut last, mut found) = ([[f64::NAN; 2]; 3], ([0.0; 3], [0.0; 3], 0.0));
     for j in 0..side {
         for i in 0..side {
             let centre = |k: u32| (2 * k + 1) as f64 / side as f64 - 1.0;
@@ -191,7 +198,10 @@ fn all_proved(form: [Form; 3], side: u32, target: &Target) -> Option<Vec<Pixel>>
                 let off = f.r + 8.0 * f64::EPSILON * (f.c.abs() + f.x.abs() + f.y.abs() + f.r);
                 [mean - off, mean + off]
             });
-            let (value, half_width, codes) = judged(known, target);
+            if known != last {
+                (last, found) = (known, judged(known, target));
+            }
+            let (value, half_width, codes) = found;
             if !(codes <= target.codes) {
                 return None;
             }

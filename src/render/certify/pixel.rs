@@ -1,67 +1,38 @@
-//! One pixel to its target: regions first, divided where most is unknown; then samples in those that stay wide; then samples
-//! alone.
+//! One pixel to its target: regions first; then samples in those that stay wide; or samples alone.
 
 use super::super::bounds::{larger, smaller};
-use super::bound::{Bound, Span, hull};
+use super::bound::{Span, hull};
 use super::certifier::Certifier;
 use super::estimate::estimate;
-use super::leaves::{Leaf, Plan, judged, plan, total};
+use super::leaves::{Leaf, Plan, judged, total};
+use super::looks::{Found, Looked};
 use super::sampler::Sampler;
-use super::target::{Pixel, Status, Target, code};
+use super::target::{Pixel, Status, Target, stored};
 use crate::math::hash::KeyedHash;
 
 /// Tags of what random numbers are for.
 const JITTER: u64 = 1;
 const REPLICATE: u64 = 2;
 
-/// Samples that one look at a region costs the time of: measured, from 5 on plain surfaces to 40 on edges.
-const PRICE: u32 = 20;
-
 impl Certifier<'_> {
-    /// Brings pixel (x, y) to its target as far as the target's budgets allow.
-    pub fn pixel(&self, sampler: &mut dyn Sampler, [x, y]: [u32; 2], target: &Target) -> Pixel {
-        let rect = [x as f64, y as f64, x as f64 + 1.0, y as f64 + 1.0];
+    /// Brings pixel (x, y) to its target as far as the target's budgets allow; with up to `affordable` samples for certainty.
+    pub fn pixel(&self, sampler: &mut dyn Sampler, at: [u32; 2], target: &Target, affordable: u32) -> Pixel {
         if !target.certificates {
             let range = self.ceiling(self.depth);
-            return self.estimated(sampler, [x, y], (range, range), 0, target);
+            return self.estimated(sampler, at, (range, range), 0, target);
         }
-        let mut leaves = vec![self.leaf(rect, 1.0, [1.0; 3])];
-        let slopes = total(&leaves).map(slope);
-        leaves[0].width = width(&leaves[0].bound, 1.0, slopes);
-        let mut evaluations = 1;
-        loop {
-            let known = total(&leaves);
-            let (value, half_width, codes) = judged(known, target);
-            if codes <= target.codes {
-                return Pixel { value, half_width, codes, status: Status::Proved, evaluations, samples: 0 };
+        let Looked { leaves, evaluations, found } = self.looks(at, target, affordable);
+        match found {
+            Found::Proved(pixel) => pixel,
+            Found::Planned(plan) => self.sampled(sampler, at, &leaves, (&plan, evaluations), target),
+            Found::Hopeless => {
+                let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+                for leaf in &leaves {
+                    range = [0, 1, 2].map(|c| hull(range[c], leaf.bound.range[c]));
+                }
+                self.estimated(sampler, at, (total(&leaves), range), evaluations, target)
             }
-            let spent = evaluations + 4 > target.evaluations;
-            let most = if spent { target.samples } else { smaller_u32(evaluations * PRICE / 8, target.samples) };
-            // After 1, 5, 9, 17, 33, … looks.
-            if (spent || (evaluations == 1 || (evaluations - 1).is_power_of_two()))
-                && let Some(plan) = plan(&leaves, target, most)
-            {
-                return self.sampled(sampler, [x, y], &leaves, (&plan, evaluations), target);
-            }
-            if spent {
-                break;
-            }
-            let widest = (1..leaves.len()).fold(0, |w, i| if leaves[i].width > leaves[w].width { i } else { w });
-            let leaf = leaves.swap_remove(widest);
-            let [l, t, r, b] = leaf.rect;
-            let (cx, cy) = (0.5 * (l + r), 0.5 * (t + b));
-            for rect in [[l, t, cx, cy], [cx, t, r, cy], [l, cy, cx, b], [cx, cy, r, b]] {
-                leaves.push(self.leaf(rect, 0.25 * leaf.share, slopes));
-            }
-            evaluations += 4;
         }
-        let range = leaves.iter().fold(leaves[0].bound.range, |r, l| [0, 1, 2].map(|c| hull(r[c], l.bound.range[c])));
-        self.estimated(sampler, [x, y], (total(&leaves), range), evaluations, target)
-    }
-
-    fn leaf(&self, rect: [f64; 4], share: f64, slopes: [f64; 3]) -> Leaf {
-        let bound = self.region(rect);
-        Leaf { rect, share, width: width(&bound, share, slopes), bound }
     }
 
     /// Samples as planned.
@@ -106,7 +77,7 @@ impl Certifier<'_> {
             }
         });
         let known = total(leaves);
-        let value = [0, 1, 2].map(|c| value[c].clamp(known[c][0], known[c][1]));
+        let value = [0, 1, 2].map(|c| stored(value[c].clamp(known[c][0], known[c][1])));
         let interval = |c: usize| {
             let half = plan.half_width[c];
             [larger(value[c] - half, known[c][0]), smaller(value[c] + half, known[c][1])]
@@ -137,7 +108,7 @@ impl Certifier<'_> {
         let enough = |e: &super::estimate::Estimate| codes(e.value, e.half_width) <= target.codes;
         match estimate(sampler, rect, (target, target.samples), range, key, enough) {
             Some((e, reached)) => {
-                let value = [0, 1, 2].map(|c| e.value[c].clamp(known[c][0], known[c][1]));
+                let value = [0, 1, 2].map(|c| stored(e.value[c].clamp(known[c][0], known[c][1])));
                 let status = if reached { Status::Estimated } else { Status::Open };
                 let codes = codes(value, e.half_width);
                 Pixel { value, half_width: e.half_width, codes, status, evaluations, samples: e.samples }
@@ -148,19 +119,4 @@ impl Certifier<'_> {
             }
         }
     }
-}
-
-fn smaller_u32(a: u32, b: u32) -> u32 {
-    if a < b { a } else { b }
-}
-
-/// What is unknown of a region, in codes of the pixel.
-fn width(bound: &Bound, share: f64, slopes: [f64; 3]) -> f64 {
-    (0..3).map(|c| share * (bound.sum[c][1] - bound.sum[c][0]) * slopes[c]).fold(0.0, larger)
-}
-
-/// Codes for a unit of light, over an interval.
-fn slope([lo, hi]: Span) -> f64 {
-    let hi = larger(hi, lo + 1e-3); // anything small: of a single value, the curve's own slope nearly
-    (code(hi) - code(lo)) / (hi - lo)
 }

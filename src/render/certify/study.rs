@@ -1,6 +1,7 @@
 //! The study of one region: what all its steps share, and the cut in two.
 
 use super::bound::{Bound, Span};
+use super::bundle::Bundle;
 use super::certifier::Certifier;
 use super::polygon::Polygon;
 use crate::math::Form;
@@ -16,6 +17,8 @@ pub struct Study<'c> {
     pub ceiling: [Span; 3],
     /// Whether only one form for all of the region is of any use: then nothing is cut.
     pub undivided: bool,
+    /// Whether a mean was taken that is the better known the wider the region is.
+    pub in_rows: bool,
     /// Cuts so far.
     pieces: u32,
 }
@@ -26,7 +29,18 @@ pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> B
 impl<'c> Study<'c> {
     /// With nothing known and nothing spent.
     pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
-        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, pieces: 0 }
+        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, pieces: 0 }
+    }
+
+    /// What is known of the light in a rectangle of the picture: left, top, right, bottom.
+    pub fn rectangle(&mut self, rect: [f64; 4]) -> Bound {
+        let [left, top, right, bottom] = rect;
+        let x = Form { x: 0.5 * (right - left), ..Form::between(0.5 * (left + right), 0.5 * (left + right)) };
+        let y = Form { y: 0.5 * (bottom - top), ..Form::between(0.5 * (top + bottom), 0.5 * (top + bottom)) };
+        let (o, d) = self.scene.grid.ray::<Form>(x, y);
+        let (square, depth) = (Polygon::square(), self.scene.depth);
+        let bound = self.seen(&square, &Bundle { o, d, start: None, rect: Some(rect) }, depth);
+        bound.knowing(&square, self.scene.ceiling(depth))
     }
 
     /// What is sure without looking.

@@ -1,6 +1,7 @@
 //! What is asked of a picture, and what is answered: errors are judged after the sRGB curve, in codes.
 
 use super::super::bounds::{larger, smaller};
+use super::bound::Span;
 use crate::scene::color::{decode_srgb, encode_srgb};
 
 /// What rounding may add to an error, in codes: the curve's two formulas, by which this is judged and that is written, meet to 1e-7
@@ -33,26 +34,52 @@ impl Target {
             codes,
             quantum: 1.0,
             confidence: 0.999,
-            evaluations: 256,
-            samples: 1 << 17,
+            evaluations: 512,
+            samples: 1 << 18,
             certificates: true,
             believed: 1.0,
         }
     }
 
-    /// What is left of the error when the rounding of written codes is taken out.
+    /// What is left of the error when the rounding of written codes is taken out, and that of light to the film's numbers: 24
+    /// bits, and a code changes by less than 255 of its relative change.
     pub(super) fn before_rounding(&self) -> f64 {
-        larger(self.codes - 0.5 * self.quantum, 0.0)
+        larger(self.codes - 0.5 * self.quantum - 256.0 / (1u32 << 24) as f64 - CURVE, 0.0)
     }
 
     /// The largest distance, in codes, between the code written for `value` and any value from `lo` to `hi`.
-    pub(super) fn error(&self, value: f64, [lo, hi]: [f64; 2]) -> f64 {
-        let code = code(value as f32 as f64); // as the film holds it
+    pub(super) fn error(&self, value: f64, [lo, hi]: Span) -> f64 {
+        self.apart(value, [code(lo), code(hi)])
+    }
+
+    /// The same, for codes from `lo` to `hi`.
+    fn apart(&self, value: f64, [lo, hi]: Span) -> f64 {
+        let code = code(value);
         let written = if self.quantum > 0.0 { (code / self.quantum).round() * self.quantum } else { code };
-        let [lo, hi] = [lo, hi].map(|end| value + self.believed * (end - value));
-        larger(self::code(hi) - written, written - self::code(lo)) + CURVE
+        let [lo, hi] = [lo, hi].map(|end| code + self.believed * (end - code));
+        larger(hi - written, written - lo) + CURVE
+    }
+
+    /// The value in an interval that is about half-way between its codes, as it is stored, and its error.
+    pub(super) fn settled(&self, [lo, hi]: Span) -> (f64, f64) {
+        let codes = [code(lo), code(hi)];
+        // Where it is short, the curve is straight.
+        let value = match codes[1] - codes[0] > STRAIGHT && lo >= 0.0 && hi <= 1.0 {
+            true => decode_srgb((codes[0] + codes[1]) * (0.5 / 255.0)),
+            false => 0.5 * lo + 0.5 * hi,
+        };
+        let value = stored(value);
+        (value, self.apart(value, codes))
     }
 }
+
+/// Light as the film stores it.
+pub(super) fn stored(v: f64) -> f64 {
+    v as f32 as f64
+}
+
+/// So many codes further on, the curve bends by less than a hundredth of a code: by c²/(8·255·0.42·2.4) at most, where it is darkest.
+const STRAIGHT: f64 = 0.25;
 
 /// How sure the error of a pixel is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +134,7 @@ impl Pixel {
         let (mut at, mut half_width, mut codes) = (self.value, self.half_width, 0.0);
         for c in 0..3 {
             let (lo, hi) = (self.value[c] - self.half_width[c], self.value[c] + self.half_width[c]);
-            at[c] = larger(smaller(value[c], hi), lo);
+            at[c] = stored(larger(smaller(value[c], hi), lo));
             half_width[c] = larger(hi - at[c], at[c] - lo);
             codes = larger(codes, target.error(at[c], [lo, hi]));
         }
@@ -130,28 +157,14 @@ pub fn code(v: f64) -> f64 {
     255.0 * encode_srgb(v.clamp(0.0, 1.0))
 }
 
-/// The value in an interval that is half-way between its codes, and how far its ends are.
-pub(super) fn middle([lo, hi]: [f64; 2]) -> (f64, f64) {
-    let value = match lo >= 0.0 && hi <= 1.0 {
-        true => decode_srgb((code(lo) + code(hi)) * (0.5 / 255.0)).clamp(lo, hi),
-        false => 0.5 * lo + 0.5 * hi,
-    };
-    (value, larger(value - lo, hi - value))
-}
-
-/// How much more light than `v` a channel may hold without its code growing by more than `codes`.
+/// How much more light than `v` a channel may hold without its code growing by more than `codes`: a trifle less.
 pub(super) fn room(v: f64, codes: f64) -> f64 {
     let v = v.clamp(0.0, 1.0);
-    let (mut least, mut most) = (0.0, 1.0);
-    for _ in 0..40 {
-        let middle = 0.5 * (least + most);
-        if code(v + middle) - code(v) <= codes && v + middle <= 1.0 {
-            least = middle;
-        } else {
-            most = middle;
-        }
+    match code(v) + codes {
+        // Beyond the last code all light is the same.
+        most if most >= 255.0 => 1.0,
+        most => larger(decode_srgb(most / 255.0) - v, 0.0) * (1.0 - 1.0 / (1u64 << 30) as f64),
     }
-    least
 }
 
 #[cfg(test)]
@@ -164,8 +177,15 @@ mod tests {
         assert!((target.error(0.5, [0.5, 0.5]) - (code(0.5) - code(0.5).round()).abs()).abs() <= CURVE);
         let exact = Target { quantum: 0.0, ..target };
         assert!(exact.error(0.5, [0.5, 0.5]) <= CURVE);
-        let (value, half) = middle([0.1, 0.2]);
-        assert!(code(value) - code(0.1) - (code(0.2) - code(value)) < 1e-9 && half > 0.05);
+        for (lo, hi) in [(0.1, 0.2), (0.0, 0.001), (0.003, 0.00302), (0.9, 0.9001), (-1.0, 0.5), (0.5, 3.0)] {
+            let (value, error) = exact.settled([lo, hi]);
+            let half = 0.5 * (code(hi) - code(lo));
+            assert!(
+                error >= half - 1e-9 && (lo < 0.0 || hi > 1.0 || error < half + 0.01),
+                "{lo} {hi}: {value} {error}"
+            );
+            assert_eq!(value, value as f32 as f64);
+        }
     }
 
     #[test]
@@ -173,8 +193,8 @@ mod tests {
         let pixel = Pixel { value: [0.5; 3], half_width: [0.02; 3], status: Status::Proved, ..Pixel::unknown() };
         let wide = Target::new(16.0);
         let moved = pixel.with_value([0.51, 0.5, 0.9], &wide).unwrap();
-        assert_eq!((moved.value[0], moved.value[1], moved.status), (0.51, 0.5, Status::Proved));
-        assert!((moved.value[2] - 0.52).abs() < 1e-15 && (moved.half_width[2] - 0.04).abs() < 1e-15);
+        assert_eq!((moved.value[0], moved.value[1], moved.status), (stored(0.51), 0.5, Status::Proved));
+        assert!((moved.value[2] - 0.52).abs() < 1e-7 && (moved.half_width[2] - 0.04).abs() < 1e-7);
         assert!(moved.codes > wide.error(0.5, [0.48, 0.52]) && moved.codes <= 16.0);
         assert!(pixel.with_value([0.9; 3], &Target::new(3.0)).is_none(), "its other end would be too far");
     }
@@ -184,5 +204,9 @@ mod tests {
         let rooms = [0.0, 0.01, 0.2, 0.9].map(|v| room(v, 2.0));
         assert!(rooms.windows(2).all(|w| w[1] > w[0]), "{rooms:?}");
         assert!((code(0.2 + rooms[2]) - code(0.2) - 2.0).abs() < 1e-6);
+        assert!(
+            (0..1000)
+                .all(|i| code(i as f64 * 0.00099 + room(i as f64 * 0.00099, 0.5)) - code(i as f64 * 0.00099) <= 0.5)
+        );
     }
 }
