@@ -4,6 +4,7 @@
 //! library that stands in for it, only faster.
 
 use super::belt::{Belt, Watchman};
+use super::certify::{LaneSampler, Sampler};
 use super::crew::{crew, useful};
 use super::footprint::{Footprint, Recorder};
 use super::options::{Crop, Instructions, Options, Progress, RayCounts, Rendered, Streamed};
@@ -67,6 +68,17 @@ pub fn render_tiles(
 ) -> Option<RayCounts> {
     let work = Work { world, options, progress, cancel };
     work.fill(film, Some(tiles), Some(footprints)).map(|(rays, _)| rays)
+}
+
+/// A tracer of any points of the picture, in 64-bit numbers, until `cancel` is set.
+pub fn sampler<'w>(world: &'w World, options: &Options, cancel: &'w AtomicBool) -> Box<dyn Sampler + 'w> {
+    match Build::of(options.instructions) {
+        Build::Common => Box::new(LaneSampler::<f64>::new(world, options, cancel)),
+        #[cfg(target_arch = "x86_64")]
+        Build::Avx2 => Box::new(LaneSampler::<lane::F64x4>::new(world, options, cancel)),
+        #[cfg(target_arch = "x86_64")]
+        Build::Avx512 => Box::new(LaneSampler::<lane::F64x8>::new(world, options, cancel)),
+    }
 }
 
 /// The tiles of a picture, row by row.
@@ -174,7 +186,7 @@ impl Work<'_> {
     /// Follows the course; rays, and the threads that traced them.
     fn run(&self, course: &Course<'_>, threads: usize) -> Option<(RayCounts, usize)> {
         let on = Build::of(self.options.instructions);
-        // The one place that chooses lanes: only what the processor was found to have.
+        // Here and in `sampler` lanes are chosen, nowhere else: only what the processor was found to have.
         let counts = crew(threads, || match (on, self.options.precision) {
             (Build::Common, Precision::F64) => self.trace::<f64>(course),
             (Build::Common, Precision::F32) => self.trace::<f32>(course),

@@ -29,7 +29,7 @@ pub struct Estimate {
 
 /// Samples a pixel, twice as often each time, until `is_enough` or the budget is spent. `range` is where its light lies.
 pub fn estimate(
-    sampler: &mut Sampler<'_>,
+    sampler: &mut dyn Sampler,
     rect: [f64; 4],
     (target, budget): (&Target, u32),
     range: [Span; 3],
@@ -51,7 +51,7 @@ pub fn estimate(
                 let [u, v] = sobol::point(i, key);
                 [rect[0] + u * (rect[2] - rect[0]), rect[1] + v * (rect[3] - rect[1])]
             }));
-            sampler.trace(rect, &points, |_, light| {
+            sampler.trace(rect, &points, &mut |_, light| {
                 for c in 0..3 {
                     sum[c] += light[c];
                 }

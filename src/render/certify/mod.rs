@@ -19,6 +19,7 @@ mod sampler;
 mod sheet;
 mod sobol;
 mod study;
+mod summary;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -28,6 +29,7 @@ mod waves;
 
 pub use bound::Bound;
 pub use certifier::Certifier;
-pub use picture::{certify, summary};
-pub use sampler::Sampler;
+pub use picture::{Control, certify, refine};
+pub use sampler::{LaneSampler, Sampler};
+pub use summary::{Summary, Worst};
 pub use target::{Pixel, Status, Target, code};

@@ -1,8 +1,9 @@
 //! A picture brought to its target: regions of many pixels first, then pixel by pixel. Every pixel depends on the world, the
 //! options and the target alone, so the picture has the same bits for any number of threads.
 
-use super::super::bounds::larger;
-use super::super::options::{Crop, Options};
+use super::super::crew::{crew, useful};
+use super::super::dispatch::sampler;
+use super::super::options::{Crop, Options, Progress, Silent};
 use super::super::world::World;
 use super::bound::Span;
 use super::certifier::Certifier;
@@ -10,84 +11,172 @@ use super::leaves::judged;
 use super::sampler::Sampler;
 use super::target::{Pixel, Status, Target};
 use crate::math::Form;
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// Side of the largest regions, in pixels.
 const BLOCK: u32 = 8;
 
-/// Brings every pixel of the picture, or of the options' part of it, to the target; row by row.
-pub fn certify(world: &World, options: &Options, target: &Target) -> Vec<Pixel> {
-    let certifier = Certifier::new(world, options);
-    let part = options.crop_or_all();
-    // Blocks are those of the whole picture, whatever part is asked for.
-    let starts = |from: u32, length: u32| (from / BLOCK * BLOCK..from + length).step_by(BLOCK as usize);
-    let blocks: Vec<[u32; 2]> =
-        starts(part.y, part.height).flat_map(|y| starts(part.x, part.width).map(move |x| [x, y])).collect();
-    let done: Vec<Vec<([u32; 2], Pixel)>> = blocks
-        .par_iter()
-        .map_init(
-            || Sampler::new(world, options),
-            |sampler, at| {
-                let mut pixels = Vec::new();
-                let picture = [options.width, options.height];
-                certifier
-                    .block(sampler, (*at, BLOCK), (picture, &part), target, &mut |at, pixel| pixels.push((at, pixel)));
-                pixels
-            },
-        )
-        .collect();
-    let nothing =
-        Pixel { value: [0.0; 3], half_width: [0.0; 3], codes: 0.0, status: Status::Open, evaluations: 0, samples: 0 };
-    let mut out = vec![nothing; part.width as usize * part.height as usize];
-    for ([x, y], pixel) in done.into_iter().flatten() {
-        out[(y - part.y) as usize * part.width as usize + (x - part.x) as usize] = pixel;
-    }
-    out
+/// Who is told of finished pixels, and who may end the work.
+#[derive(Clone, Copy)]
+pub struct Control<'c> {
+    /// Told of every block of pixels that is done with, and of their light, which is final for the target at hand.
+    pub progress: &'c dyn Progress,
+    /// Once set, the work ends within milliseconds.
+    pub cancel: &'c AtomicBool,
 }
 
-impl Certifier<'_> {
-    /// The pixels of `part` in the block of `side`² pixels at `at`, of a picture of the given size.
-    fn block(
-        &self,
-        sampler: &mut Sampler<'_>,
-        (at, side): ([u32; 2], u32),
-        (picture, part): ([u32; 2], &Crop),
-        target: &Target,
-        put: &mut dyn FnMut([u32; 2], Pixel),
-    ) {
-        let [x, y] = at;
-        let beside = x >= part.x + part.width || y >= part.y + part.height || x + side <= part.x || y + side <= part.y;
-        if beside || x >= picture[0] || y >= picture[1] {
-            return;
-        }
-        let inside =
-            |x: u32, y: u32| (part.x..part.x + part.width).contains(&x) && (part.y..part.y + part.height).contains(&y);
-        if side == 1 {
-            return put(at, self.pixel(sampler, at, target));
-        }
-        // Blocks that reach beyond the picture are looked at in parts.
-        let within = x + side <= picture[0] && y + side <= picture[1];
-        let rect = [x as f64, y as f64, (x + side) as f64, (y + side) as f64];
-        if within
-            && let Some(form) = self.form(rect)
-            && let Some(pixels) = all_proved(form, side, target)
+/// Every pixel of the picture, or of the options' part of it, brought to the target as far as its budgets allow; row by row.
+pub fn certify(world: &World, options: &Options, target: &Target) -> Vec<Pixel> {
+    let part = options.crop_or_all();
+    let mut pixels = vec![Pixel::unknown(); part.width as usize * part.height as usize];
+    let control = Control { progress: &Silent, cancel: &AtomicBool::new(false) };
+    refine(world, options, target, &mut pixels, control);
+    pixels
+}
+
+/// Brings those pixels to the target that don't keep its error yet, and leaves alone those that do. Whether it got through: false
+/// where it was cancelled; what wasn't reached is left as it was then.
+///
+/// `pixels` are those of the picture, or of the options' part of it, row by row: [`Pixel::unknown`], or what a call for a larger
+/// error left, of the same world and options. A pixel that isn't brought to the target keeps what it was known to keep
+/// before. Bits depend on the world, the options and all targets so far, on nothing else, unless the work is cancelled.
+pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [Pixel], control: Control<'_>) -> bool {
+    let certifier = Certifier::new(world, options);
+    let blocks = blocks(options, pixels);
+    let next = AtomicUsize::new(0);
+    crew(useful(options.threads, blocks.len()), || {
+        let mut work = Work {
+            certifier: &certifier,
+            sampler: &mut *sampler(world, options, control.cancel),
+            picture: [options.width, options.height],
+            target,
+            cancel: control.cancel,
+            spent: 0,
+        };
+        while let Some(block) = blocks.get(next.fetch_add(1, Relaxed))
+            && !control.cancel.load(Relaxed)
         {
-            for (i, pixel) in (0..).zip(pixels) {
-                let at = [x + i % side, y + i / side];
-                if inside(at[0], at[1]) {
-                    put(at, pixel);
-                }
+            // Locked once, by the thread whose turn it is.
+            let mut block = block.lock().unwrap_or_else(PoisonError::into_inner);
+            work.square(&mut block, BLOCK, [0, 0]);
+            if !control.cancel.load(Relaxed) {
+                block.tell(control.progress);
             }
+        }
+    });
+    !control.cancel.load(Relaxed)
+}
+
+/// Pixels of a square of [`BLOCK`]² that are asked for.
+struct Block<'p> {
+    /// The square's corner in the picture, whatever part is asked for.
+    at: [u32; 2],
+    /// What is asked for, in the picture.
+    part: Crop,
+    rows: Vec<&'p mut [Pixel]>,
+}
+
+/// Cuts the pixels of the options' part into blocks: those of the whole picture.
+fn blocks<'p>(options: &Options, pixels: &'p mut [Pixel]) -> Vec<Mutex<Block<'p>>> {
+    let part = options.crop_or_all();
+    // By the block that the number lies in: its start, and where the part of it ends that is asked for.
+    let end = |at: u32, from: u32, length: u32| ((at / BLOCK + 1).saturating_mul(BLOCK)).min(from + length);
+    let mut blocks: Vec<Block<'p>> = Vec::new();
+    let mut row_of_blocks = 0;
+    for (y, mut row) in (part.y..).zip(pixels.chunks_mut(part.width.max(1) as usize)) {
+        if y == part.y || y % BLOCK == 0 {
+            row_of_blocks = blocks.len();
+        }
+        let height = end(y, part.y, part.height) - y;
+        let (mut x, mut number) = (part.x, row_of_blocks);
+        while !row.is_empty() {
+            let width = end(x, part.x, part.width) - x;
+            let (piece, rest) = row.split_at_mut(row.len().min(width as usize));
+            if number == blocks.len() {
+                let at = [x / BLOCK * BLOCK, y / BLOCK * BLOCK];
+                blocks.push(Block { at, part: Crop { x, y, width, height }, rows: Vec::new() });
+            }
+            blocks[number].rows.push(piece);
+            (row, x, number) = (rest, x + width, number + 1);
+        }
+    }
+    blocks.into_iter().map(Mutex::new).collect()
+}
+
+impl Block<'_> {
+    /// The pixel at a place in the picture, if it is asked for.
+    fn pixel(&mut self, [x, y]: [u32; 2]) -> Option<&mut Pixel> {
+        let row = self.rows.get_mut(y.checked_sub(self.part.y)? as usize)?;
+        row.get_mut(x.checked_sub(self.part.x)? as usize)
+    }
+
+    fn tell(&self, progress: &dyn Progress) {
+        let mut light: Vec<Vec<[f32; 3]>> =
+            self.rows.iter().map(|row| row.iter().map(|p| p.value.map(|x| x as f32)).collect()).collect();
+        let rows: Vec<&mut [[f32; 3]]> = light.iter_mut().map(|row| &mut row[..]).collect();
+        progress.finished(self.part, &rows);
+    }
+}
+
+/// One thread's work.
+struct Work<'w> {
+    certifier: &'w Certifier<'w>,
+    sampler: &'w mut dyn Sampler,
+    picture: [u32; 2],
+    target: &'w Target,
+    cancel: &'w AtomicBool,
+    /// Looks at regions of several pixels that no pixel was charged for yet.
+    spent: u32,
+}
+
+impl Work<'_> {
+    /// The pixels of a square of the block, `from` its corner.
+    fn square(&mut self, block: &mut Block<'_>, side: u32, from: [u32; 2]) {
+        let [x, y] = [block.at[0] + from[0], block.at[1] + from[1]];
+        let places = move || (0..side * side).map(move |i| [x + i % side, y + i / side]);
+        let codes = self.target.codes;
+        let mut wanted = places().filter_map(|at| block.pixel(at).map(|p| !p.keeps(codes)));
+        if !wanted.any(|wanted| wanted) || self.cancel.load(Relaxed) {
             return;
+        }
+        if side == 1 {
+            let pixel = self.certifier.pixel(self.sampler, [x, y], self.target);
+            return self.put(block, [x, y], pixel);
+        }
+        // Squares that reach beyond the picture are looked at in parts.
+        let within = x + side <= self.picture[0] && y + side <= self.picture[1];
+        if within && self.target.certificates {
+            let rect = [x as f64, y as f64, (x + side) as f64, (y + side) as f64];
+            self.spent += 1;
+            if let Some(pixels) = self.certifier.form(rect).and_then(|form| all_proved(form, side, self.target)) {
+                for (at, pixel) in places().zip(pixels) {
+                    if block.pixel(at).is_some_and(|p| !p.keeps(codes)) {
+                        self.put(block, at, pixel);
+                    }
+                }
+                return;
+            }
         }
         let half = side / 2;
         for [dx, dy] in [[0, 0], [half, 0], [0, half], [half, half]] {
-            self.block(sampler, ([x + dx, y + dy], half), (picture, part), target, put);
+            self.square(block, half, [from[0] + dx, from[1] + dy]);
+        }
+    }
+
+    /// Writes down what was found, unless it was cancelled on the way.
+    fn put(&mut self, block: &mut Block<'_>, at: [u32; 2], mut found: Pixel) {
+        if self.cancel.load(Relaxed) {
+            return;
+        }
+        found.evaluations += std::mem::take(&mut self.spent);
+        if let Some(pixel) = block.pixel(at) {
+            *pixel = pixel.and_then(found);
         }
     }
 }
 
-/// The pixels of a block whose light is `form` all over; `None` unless that proves every one of them.
+/// The pixels of a square whose light is `form` all over; `None` unless that proves every one of them.
 fn all_proved(form: [Form; 3], side: u32, target: &Target) -> Option<Vec<Pixel>> {
     if form.iter().any(|f| !f.is_known()) {
         return None;
@@ -106,23 +195,8 @@ fn all_proved(form: [Form; 3], side: u32, target: &Target) -> Option<Vec<Pixel>>
             if !(codes <= target.codes) {
                 return None;
             }
-            let evaluations = (i == 0 && j == 0) as u32;
-            pixels.push(Pixel { value, half_width, codes, status: Status::Proved, evaluations, samples: 0 });
+            pixels.push(Pixel { value, half_width, codes, status: Status::Proved, evaluations: 0, samples: 0 });
         }
     }
     Some(pixels)
-}
-
-/// How many pixels of a picture have which status: proved, bounded, estimated, open; and the largest error in codes that any of
-/// the first three allows.
-pub fn summary(pixels: &[Pixel]) -> ([usize; 4], f64) {
-    let mut counts = [0; 4];
-    let mut worst = 0.0;
-    for p in pixels {
-        counts[p.status as usize] += 1;
-        if p.status != Status::Open {
-            worst = larger(worst, p.codes);
-        }
-    }
-    (counts, worst)
 }

@@ -7,65 +7,90 @@ use super::super::footprint::Recorder;
 use super::super::options::Options;
 use super::super::tracer::Tracer;
 use super::super::world::World;
+use crate::math::{Elem, Lane};
 use std::sync::atomic::AtomicBool;
 
-/// Nothing cancels samples: they come in small numbers.
-static NEVER: AtomicBool = AtomicBool::new(false);
-
-/// Traces points of the picture in 64-bit numbers.
-pub struct Sampler<'w> {
-    world: &'w World,
-    grid: PixelGrid<'w>,
-    tracer: Tracer<'w, f64>,
-    /// Rays from the camera so far.
-    pub samples: u64,
+/// Traces points of the picture in 64-bit numbers. What it is compiled for never changes a bit.
+pub trait Sampler {
+    /// Calls `seen` with the number and the light of each point, all of which lie within `rect`: left, top, right, bottom. Where
+    /// the work is cancelled meanwhile, that light means nothing.
+    fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3]));
 }
 
-impl<'w> Sampler<'w> {
+/// A sampler whose rays travel in lanes.
+pub struct LaneSampler<'w, L: Lane> {
+    world: &'w World,
+    grid: PixelGrid<'w>,
+    tracer: Tracer<'w, L>,
+}
+
+impl<'w, L: Lane> LaneSampler<'w, L> {
     /// For a picture of the given options.
-    pub fn new(world: &'w World, options: &Options) -> Sampler<'w> {
-        let mut tracer = Tracer::new(world, options.max_depth, &NEVER, Recorder::off());
+    pub fn new(world: &'w World, options: &Options, cancel: &'w AtomicBool) -> LaneSampler<'w, L> {
+        let mut tracer = Tracer::new(world, options.max_depth, cancel, Recorder::off());
         let grid = world.camera.grid(options);
         let batch = tracer.camera_rays();
         for i in 0..MOST {
             for c in 0..3 {
-                batch.weight[c][i] = 1.0;
-                batch.d[c][i] = grid.forward()[c];
+                batch.weight[c][i] = L::Elem::from_f64(1.0);
+                batch.d[c][i] = L::Elem::from_f64(grid.forward()[c]);
             }
-            batch.slot[i] = i as f64;
-            batch.source[i] = NONE;
+            batch.slot[i] = L::Elem::from_f64(i as f64);
+            batch.source[i] = L::Elem::from_f64(NONE);
         }
-        Sampler { world, grid, tracer, samples: 0 }
+        LaneSampler { world, grid, tracer }
     }
 
-    /// Calls `seen` with the number and the light of each point, all of which lie within `rect`: left, top, right, bottom.
-    pub fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], mut seen: impl FnMut(usize, [f64; 3])) {
-        self.samples += points.len() as u64;
+    /// Finds what rays through `rect` may meet; false where that is nothing.
+    #[inline(always)]
+    fn find_candidates(&mut self, rect: [f64; 4]) -> bool {
         let margin = margin(f64::EPSILON);
         let frustum = self.grid.frustum(rect, margin);
         let grid = &self.grid;
-        let candidates = &mut self.tracer.candidates;
-        candidates.gather(self.world, |b| frustum.may_meet(b), |n, o| grid.may_meet_plane(rect, n, o, margin));
-        if candidates.is_empty() {
+        self.tracer.candidates.gather(
+            self.world,
+            #[inline(always)]
+            |b| frustum.may_meet(b),
+            |n, offset| grid.may_meet_plane(rect, n, offset, margin),
+        );
+        !self.tracer.candidates.is_empty()
+    }
+
+    /// Traces up to [`MOST`] points.
+    #[inline(always)]
+    fn batch(&mut self, points: &[[f64; 2]]) {
+        let batch = self.tracer.camera_rays();
+        batch.len = points.len();
+        for (i, [x, y]) in points.iter().enumerate() {
+            let (o, d) = self.grid.ray::<f64>(*x, *y);
+            for c in 0..3 {
+                (batch.o[c][i], batch.d[c][i]) = (L::Elem::from_f64(o[c]), L::Elem::from_f64(d[c]));
+            }
+        }
+        match self.world.camera.at_eye() {
+            true => self.tracer.trace::<true>(),
+            false => self.tracer.trace::<false>(),
+        }
+    }
+}
+
+impl<L: Lane> Sampler for LaneSampler<'_, L> {
+    fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3])) {
+        let found = L::vectorize(
+            #[inline(always)]
+            || self.find_candidates(rect),
+        );
+        if !found {
             (0..points.len()).for_each(|i| seen(i, self.world.background));
             return;
         }
-        let at_eye = self.world.camera.at_eye();
         for (chunk, first) in points.chunks(MOST).zip((0..).step_by(MOST)) {
-            let batch = self.tracer.camera_rays();
-            batch.len = chunk.len();
-            for (i, [x, y]) in chunk.iter().enumerate() {
-                let (o, d) = self.grid.ray::<f64>(*x, *y);
-                for c in 0..3 {
-                    (batch.o[c][i], batch.d[c][i]) = (o[c], d[c]);
-                }
-            }
-            match at_eye {
-                true => self.tracer.trace::<true>(),
-                false => self.tracer.trace::<false>(),
-            }
+            L::vectorize(
+                #[inline(always)]
+                || self.batch(chunk),
+            );
             for i in 0..chunk.len() {
-                seen(first + i, [0, 1, 2].map(|c| self.tracer.radiance[c][i]));
+                seen(first + i, [0, 1, 2].map(|c| self.tracer.radiance[c][i].to_f64()));
             }
         }
     }

@@ -16,12 +16,14 @@ pub struct Target {
     pub evaluations: u32,
     /// Most samples of a pixel.
     pub samples: u32,
+    /// Whether regions are looked at. Without them pixels are [`Estimated`](Status::Estimated) at best.
+    pub certificates: bool,
 }
 
 impl Target {
     /// An error of so many codes in a file of 8 bits, with confidence 0.999 and room enough for what the examples need.
     pub fn new(codes: f64) -> Target {
-        Target { codes, quantum: 1.0, confidence: 0.999, evaluations: 256, samples: 1 << 17 }
+        Target { codes, quantum: 1.0, confidence: 0.999, evaluations: 256, samples: 1 << 17, certificates: true }
     }
 
     /// What is left of the error when the rounding of written codes is taken out.
@@ -37,34 +39,63 @@ impl Target {
     }
 }
 
-/// How sure a pixel's value is.
+/// How sure the error of a pixel is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// The error is within the target, for certain.
+    /// It is no larger, for certain.
     Proved,
-    /// It is, with the probability asked for at least, whatever the scene.
+    /// It isn't, with the probability asked for at least, whatever the scene.
     Bounded,
-    /// It is, as far as samples can tell: by an interval that is right for many samples of a well-behaved scene.
+    /// It isn't, as far as samples can tell: by an interval that is right for many samples of a well-behaved scene.
     Estimated,
-    /// The budget was spent before.
+    /// The budget was spent before the target was reached. The error is what samples say, if there are any; else nothing is known.
     Open,
 }
 
-/// A pixel's value and how good it is.
+/// A pixel's value and how far off it may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Linear light.
     pub value: [f64; 3],
     /// By channel, half the width of the interval around the value that the status speaks of, linear.
     pub half_width: [f64; 3],
-    /// The largest error of the written codes that the status allows.
+    /// The largest error of the written codes.
     pub codes: f64,
-    /// Whether the target is reached, and how.
+    /// How sure that is.
     pub status: Status,
     /// Regions looked at.
     pub evaluations: u32,
     /// Rays from the camera.
     pub samples: u32,
+}
+
+impl Pixel {
+    /// A pixel before anything is known of it. It is black, and no code is further than 255 from that.
+    pub const fn unknown() -> Pixel {
+        Pixel {
+            value: [0.0; 3],
+            half_width: [f64::INFINITY; 3],
+            codes: 255.0,
+            status: Status::Open,
+            evaluations: 0,
+            samples: 0,
+        }
+    }
+
+    /// Whether it keeps an error of so many codes.
+    pub fn keeps(&self, codes: f64) -> bool {
+        self.status != Status::Open && self.codes <= codes
+    }
+
+    /// What is known after another attempt. What fell short of its target replaces nothing that is certain or likely.
+    pub(super) fn and_then(self, found: Pixel) -> Pixel {
+        let falls_short = found.status == Status::Open && (self.status != Status::Open || self.codes <= found.codes);
+        Pixel {
+            evaluations: self.evaluations.saturating_add(found.evaluations),
+            samples: self.samples.saturating_add(found.samples),
+            ..if falls_short { self } else { found }
+        }
+    }
 }
 
 /// The code of 8 bits, not rounded, of linear light.

@@ -1,14 +1,17 @@
 //! Certificates hold: light at random points of random regions lies within the form and the range, means within the sums; and
 //! a bound that is a little too narrow is noticed.
 
+use super::super::dispatch::sampler;
 use super::bound::Bound;
-use super::{Certifier, Sampler, Status, Target, certify, code, summary};
+use super::{Certifier, Control, Pixel, Status, Summary, Target, certify, code, refine};
 use crate::math::hash::KeyedHash;
 use crate::math::{Affine, Form};
 use crate::render::bounds::smaller;
-use crate::render::{Options, World};
+use crate::render::{Crop, Options, Progress, Silent, World};
 use crate::scene::*;
 use glam::DVec3;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -189,7 +192,7 @@ fn studied(scene: &Scene, (width, height): (u32, u32), regions: std::ops::Range<
     let world = World::build(scene, &scene.cameras[0]);
     let options = Options { width, height, ..Options::from_settings(&scene.settings) };
     let certifier = Certifier::new(&world, &options);
-    let mut sampler = Sampler::new(&world, &options);
+    let mut sampler = sampler(&world, &options, &NEVER);
     let mut found = Found::default();
     for i in regions {
         let random = |k: u64| KeyedHash::new().with(i).with(k).unit();
@@ -210,7 +213,7 @@ fn studied(scene: &Scene, (width, height): (u32, u32), regions: std::ops::Range<
             })
             .collect();
         let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
-        sampler.trace(rect, &points, |j, light| {
+        sampler.trace(rect, &points, &mut |j, light| {
             found.points += 1;
             let [u, w] = place(j as u64);
             let (xi, eta) = (2.0 * u - 1.0, 2.0 * w - 1.0);
@@ -266,12 +269,15 @@ fn weakened_certificates_are_noticed() {
     assert!(wrong(Weakened::Sum).1 > 0, "the integral");
 }
 
+/// Nothing is cancelled.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 /// Pixels of a picture that keep their promise, against the mean of 64×64 rays: proved ones always.
-fn kept(scene: &Scene, (width, height): (u32, u32), target: &Target) -> ([usize; 4], u64) {
+fn kept(scene: &Scene, (width, height): (u32, u32), target: &Target) -> (Summary, u64) {
     let world = World::build(scene, &scene.cameras[0]);
     let options = Options { width, height, ..Options::from_settings(&scene.settings) };
     let pixels = certify(&world, &options, target);
-    let mut sampler = Sampler::new(&world, &options);
+    let mut sampler = sampler(&world, &options, &NEVER);
     let mut broken = 0;
     for (i, pixel) in pixels.iter().enumerate().filter(|(i, p)| p.status != Status::Proved || i % 23 == 0) {
         let (x, y) = ((i as u32 % width) as f64, (i as u32 / width) as f64);
@@ -283,7 +289,7 @@ fn kept(scene: &Scene, (width, height): (u32, u32), target: &Target) -> ([usize;
             })
             .collect();
         let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
-        sampler.trace([x, y, x + 1.0, y + 1.0], &points, |_, light| {
+        sampler.trace([x, y, x + 1.0, y + 1.0], &points, &mut |_, light| {
             for c in 0..3 {
                 sum[c] += light[c];
                 squares[c] += light[c] * light[c];
@@ -298,15 +304,20 @@ fn kept(scene: &Scene, (width, height): (u32, u32), target: &Target) -> ([usize;
         });
         broken += wrong as u64;
     }
-    (summary(&pixels).0, broken)
+    (Summary::of(&pixels, target.codes), broken)
 }
 
 #[test]
 fn pictures_keep_their_promise() {
     let scene = every_shape();
-    let ([proved, bounded, estimated, open], broken) = kept(&scene, (64, 36), &Target::new(4.0));
+    let (sum, broken) = kept(&scene, (64, 36), &Target::new(4.0));
     assert_eq!(broken, 0);
-    assert!(proved > 1_900 && open == 0, "{proved} {bounded} {estimated} {open}");
+    assert!(sum.proved > 1_900 && sum.open == 0, "{sum:?}");
+    // The same from samples alone: none can be sure.
+    let sampled = Target { certificates: false, samples: 4096, ..Target::new(8.0) };
+    let (sum, broken) = kept(&scene, (32, 18), &sampled);
+    assert_eq!((sum.proved + sum.bounded, broken), (0, 0));
+    assert!(sum.estimated > 400, "{sum:?}");
 }
 
 #[test]
@@ -315,13 +326,10 @@ fn the_same_pixels_for_any_number_of_threads_and_in_a_part() {
     let world = World::build(&scene, &scene.cameras[0]);
     let options = Options { width: 60, height: 34, ..Options::from_settings(&scene.settings) };
     let target = Target { samples: 256, evaluations: 32, ..Target::new(4.0) };
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| certify(&world, &options, &target))
-    };
+    let on = |threads| certify(&world, &Options { threads: Some(threads), ..options.clone() }, &target);
     let all = on(1);
     assert!(all == on(3));
-    let part = crate::render::Crop { x: 13, y: 9, width: 21, height: 17 };
+    let part = Crop { x: 13, y: 9, width: 21, height: 17 };
     let some = certify(&world, &Options { crop: Some(part), ..options.clone() }, &target);
     for (i, pixel) in some.iter().enumerate() {
         let (x, y) = (i % 21 + 13, i / 21 + 9);
@@ -344,4 +352,87 @@ fn what_isnt_covered_is_unknown_within_its_range() {
     let pixels = certify(&world, &options, &Target::new(8.0));
     assert!(pixels.iter().any(|p| p.status == Status::Proved), "beside it");
     assert!(pixels.iter().any(|p| p.status != Status::Proved), "on it");
+}
+
+/// Writes down what it is told, and cancels after some blocks.
+struct Witness {
+    told: Mutex<Vec<Option<[f32; 3]>>>,
+    width: u32,
+    left: Mutex<usize>,
+    cancel: AtomicBool,
+}
+
+impl Witness {
+    fn new((width, height): (u32, u32), blocks: usize) -> Witness {
+        let told = Mutex::new(vec![None; (width * height) as usize]);
+        Witness { told, width, left: Mutex::new(blocks), cancel: AtomicBool::new(false) }
+    }
+}
+
+impl Progress for Witness {
+    fn finished(&self, tile: Crop, rows: &[&mut [[f32; 3]]]) {
+        let mut told = self.told.lock().unwrap();
+        for (row, y) in rows.iter().zip(tile.y..tile.y + tile.height) {
+            for (light, x) in row.iter().zip(tile.x..tile.x + tile.width) {
+                let before = told[(y * self.width + x) as usize].replace(*light);
+                assert_eq!(before, None, "told twice of ({x}, {y})");
+            }
+        }
+        let mut left = self.left.lock().unwrap();
+        *left -= 1;
+        if *left == 0 {
+            self.cancel.store(true, Relaxed);
+        }
+    }
+}
+
+#[test]
+fn what_is_cancelled_can_be_gone_on_with() {
+    let scene = every_shape();
+    let world = World::build(&scene, &scene.cameras[0]);
+    let size = (60, 34);
+    let options =
+        Options { width: size.0, height: size.1, threads: Some(2), ..Options::from_settings(&scene.settings) };
+    let target = Target { samples: 256, evaluations: 32, ..Target::new(8.0) };
+    let mut pixels = vec![Pixel::unknown(); (size.0 * size.1) as usize];
+    let mut refined = |witness: &Witness| {
+        let control = Control { progress: witness, cancel: &witness.cancel };
+        (refine(&world, &options, &target, &mut pixels, control), pixels.clone())
+    };
+    let all = certify(&world, &options, &target);
+    let first = Witness::new(size, 7);
+    let (whole, part) = refined(&first);
+    assert!(!whole && part.contains(&Pixel::unknown()));
+    for ((told, found), wanted) in first.told.lock().unwrap().iter().zip(&part).zip(&all) {
+        assert!(told.is_none_or(|told| told == wanted.value.map(|x| x as f32)));
+        assert!(*found == Pixel::unknown() || found.value == wanted.value);
+    }
+    let second = Witness::new(size, usize::MAX);
+    let (whole, rest) = refined(&second);
+    assert!(whole && second.told.lock().unwrap().iter().all(|told| told.is_some()));
+    assert!(rest.iter().zip(&all).all(|(a, b)| a.value == b.value && a.codes == b.codes && a.status == b.status));
+}
+
+#[test]
+fn what_keeps_its_error_is_left_alone() {
+    let scene = every_shape();
+    let world = World::build(&scene, &scene.cameras[0]);
+    let options = Options { width: 40, height: 24, ..Options::from_settings(&scene.settings) };
+    let rough = Target { samples: 2048, ..Target::new(16.0) };
+    let before = certify(&world, &options, &rough);
+    let mut after = before.clone();
+    let fine = Target { codes: 3.0, samples: 64, evaluations: 8, ..rough };
+    let control = Control { progress: &Silent, cancel: &NEVER };
+    assert!(refine(&world, &options, &fine, &mut after, control));
+    let mut fell_short = 0;
+    for (a, b) in before.iter().zip(&after) {
+        if a.keeps(3.0) {
+            assert_eq!(a, b);
+        } else if !b.keeps(3.0) {
+            fell_short += 1;
+            assert!(b.value == a.value && b.status == a.status && b.evaluations > a.evaluations, "{a:?} {b:?}");
+        }
+    }
+    assert!(fell_short > 0, "a budget that is too small for some");
+    assert!(before.iter().filter(|p| !p.keeps(3.0)).count() > fell_short, "but not for all");
 }
