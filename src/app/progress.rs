@@ -69,6 +69,11 @@ impl Steps {
         Steps(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
     }
 
+    /// So many steps are to be done altogether.
+    pub fn lengthen_to(&self, steps: u64) {
+        self.0.set_length(steps);
+    }
+
     /// A step begins.
     pub fn begin(&self, name: &'static str) {
         self.0.set_message(name);

@@ -1,0 +1,181 @@
+//! Turns one dial after another and measures each position, for as long as the budget lasts.
+
+use super::maker::{Made, Maker};
+use super::plan::positions;
+use super::point::{Broken, Point};
+use super::reference::Reference;
+use super::setting::{Axis, Setting, Way, number};
+use crate::film::metric::{Errors, change, written};
+use serde::Serialize;
+
+/// What was measured.
+pub struct Sweep {
+    /// The scene's own setting, the first of the points.
+    pub base: Setting,
+    /// What all were measured against.
+    pub reference: Reference,
+    /// The settings that were measured.
+    pub points: Vec<Point>,
+    /// The dials, each with the numbers of its points from the cheapest to the dearest.
+    pub rows: Vec<(Axis, Vec<usize>)>,
+    /// What wasn't measured.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A setting that wasn't measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// The dial.
+    pub axis: Axis,
+    /// The setting in words.
+    pub setting: String,
+    /// Why.
+    pub why: String,
+}
+
+/// Told of what is measured.
+pub trait Told {
+    /// Something begins; `steps` of its kind are to come, this one among them.
+    fn begin(&self, what: &'static str, steps: usize);
+    /// It is done.
+    fn end(&self);
+}
+
+/// Most times that a setting is made: the least of five runs is within a few per cent of what the machine can do.
+const MOST_RUNS: u32 = 5;
+/// A setting may be begun if it is expected to take this share of what is left: expectations err, and cheaper ones of other
+/// dials are to follow.
+const SHARE: f64 = 0.5;
+/// The share of what is left that a setting may take of which nothing is expected.
+const UNKNOWN_SHARE: f64 = 0.25;
+/// Depth and precision change the time by less than this, or the other way.
+const ROOM: f64 = 1.5;
+
+/// Measures the positions of `axes` around `base`. `None` where the user wanted no more before there was anything to compare.
+pub fn sweep(maker: &Maker<'_>, base: Setting, axes: &[Axis], told: &dyn Told) -> Option<Sweep> {
+    let plans: Vec<(Axis, Vec<Setting>)> = axes.iter().map(|axis| (*axis, positions(*axis, &base))).collect();
+    let steps = plans.iter().map(|(_, settings)| settings.len()).sum::<usize>();
+    told.begin("the scene's own setting", steps + 2);
+    let first = maker.make(&base, f64::INFINITY)?;
+    told.end();
+    told.begin("the reference", steps + 1);
+    let reference = Reference::make(maker, &base, first.cost.seconds)?;
+    told.end();
+
+    let own = first.pixels.clone();
+    let mut sweep = Sweep { base, reference, points: Vec::new(), rows: Vec::new(), left_out: Vec::new() };
+    sweep.add(base, first, &own);
+    let longest = plans.iter().map(|(_, settings)| settings.len()).max().unwrap_or(0);
+    let mut rows: Vec<Vec<Option<usize>>> = vec![Vec::new(); plans.len()];
+    // The cheapest of every dial first, so that a small budget still tells of all of them.
+    for step in 0..longest {
+        for ((axis, settings), row) in plans.iter().zip(&mut rows) {
+            let Some(setting) = settings.get(step).filter(|_| !maker.budget.is_interrupted()) else { continue };
+            told.begin(axis.word(), steps);
+            row.push(sweep.measure(maker, *axis, setting, &own));
+            told.end();
+        }
+    }
+    sweep.rows = axes.iter().copied().zip(rows.into_iter().map(|row| row.into_iter().flatten().collect())).collect();
+    for (axis, row) in &sweep.rows {
+        row.iter().for_each(|&i| sweep.points[i].axes.push(*axis));
+    }
+    sweep.repeat(maker, told);
+    Some(sweep)
+}
+
+impl Sweep {
+    fn add(&mut self, setting: Setting, made: Made, own: &[[f32; 3]]) -> usize {
+        let Made { pixels, cost, claim, certified } = made;
+        let codes = written(&pixels);
+        let truth = &self.reference.truth;
+        self.points.push(Point {
+            setting,
+            axes: Vec::new(),
+            cost,
+            claim,
+            broken: Broken::count(&codes, &certified, truth),
+            errors: Errors::of(&codes, truth, &self.reference.seen),
+            change: change(own, &pixels),
+            codes,
+        });
+        self.points.len() - 1
+    }
+
+    /// The number of the setting's point; `None` where it is left out.
+    fn measure(&mut self, maker: &Maker<'_>, axis: Axis, setting: &Setting, own: &[[f32; 3]]) -> Option<usize> {
+        if let Some(known) = self.points.iter().position(|p| p.setting == *setting) {
+            return Some(known);
+        }
+        let left = maker.budget.left();
+        let expected = self.expected(setting);
+        let room = SHARE * left;
+        let why = match expected {
+            Some(seconds) if seconds > room => {
+                Some(format!("expected to take {} s, and {} s are left", number(seconds), number(left)))
+            }
+            _ if left <= 0.0 => Some("the budget is spent".into()),
+            _ => None,
+        };
+        let limit = if expected.is_some() { f64::INFINITY } else { UNKNOWN_SHARE * left };
+        let why = match why {
+            Some(why) => why,
+            None => match maker.make(setting, limit) {
+                Some(made) => return Some(self.add(*setting, made, own)),
+                None if maker.budget.is_interrupted() => return None,
+                None => format!("not finished in {} s", number(left - maker.budget.left())),
+            },
+        };
+        self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why });
+        None
+    }
+
+    /// Seconds that a setting will take, from those that were measured; `None` where nothing tells.
+    fn expected(&self, setting: &Setting) -> Option<f64> {
+        let seconds = |p: &Point| p.cost.seconds;
+        match setting.way {
+            _ if setting.depth != self.base.depth || setting.precision != self.base.precision => {
+                Some(ROOM * seconds(&self.points[0]))
+            }
+            Way::Grid(n) => {
+                let measured = self.points.iter().rev().find_map(|p| match p.setting.way {
+                    Way::Grid(m) => Some(seconds(p) * (n * n) as f64 / (m * m) as f64),
+                    _ => None,
+                });
+                // Nothing cheaper than this is swept.
+                measured.or(Some(ROOM * seconds(&self.points[0]) * (n * n) as f64))
+            }
+            Way::Error(_) => {
+                let mut measured = self.points.iter().rev().filter(|p| matches!(p.setting.way, Way::Error(_)));
+                match (measured.next(), measured.next()) {
+                    (Some(last), Some(before)) => {
+                        let growth = seconds(last) / seconds(before);
+                        Some(seconds(last) * if growth > 1.0 { growth } else { 1.0 })
+                    }
+                    (Some(last), None) => Some(2.0 * seconds(last)),
+                    // It went through larger errors itself.
+                    _ => Some(0.5 * self.reference.seconds),
+                }
+            }
+            Way::Time(seconds) => Some(seconds),
+            Way::Sampled(_) => None,
+        }
+    }
+
+    /// Makes all of them again, as often as the budget allows: times scatter, and the least says most.
+    fn repeat(&mut self, maker: &Maker<'_>, told: &dyn Told) {
+        // What is given a time takes that time.
+        let is_timed = |p: &Point| !matches!(p.setting.way, Way::Time(_));
+        for _ in 1..MOST_RUNS {
+            let again: f64 = self.points.iter().filter(|p| is_timed(p)).map(|p| p.cost.seconds).sum();
+            if again > 0.8 * maker.budget.left() {
+                return;
+            }
+            for point in self.points.iter_mut().filter(|p| is_timed(p)) {
+                told.begin("times again", 1);
+                let Some(made) = maker.make(&point.setting, f64::INFINITY) else { return };
+                point.cost = point.cost.or(&made.cost);
+            }
+        }
+    }
+}

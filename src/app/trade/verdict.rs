@@ -1,0 +1,270 @@
+//! What the figures mean, in words: what no longer pays, what must hold and doesn't, and what to choose.
+
+use super::front::{front, knee, slope};
+use super::point::Point;
+use super::setting::{Axis, Way, number};
+use super::sweep::Sweep;
+use crate::film::metric::{Errors, Range};
+use crate::math::fun;
+use serde::Serialize;
+
+/// The error by which settings are judged against each other: the largest of any pixel, which is what can be asked for.
+pub fn judged(errors: &Errors) -> Range {
+    errors.max
+}
+
+/// What is concluded from a sweep.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// The points that none dominates in time and largest error, from the fastest to the most exact.
+    pub front: Vec<usize>,
+    /// The same for the RMSE.
+    pub front_rmse: Vec<usize>,
+    /// The point of the front behind which accuracy gets dearer.
+    pub knee: Option<usize>,
+    /// How steeply each dial buys accuracy.
+    pub slopes: Vec<Slope>,
+    /// What isn't worth its time, and what is worth knowing.
+    pub remarks: Vec<String>,
+    /// What must hold and doesn't.
+    pub violations: Vec<String>,
+}
+
+/// How the error falls with time along a dial: error ~ time^slope.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Slope {
+    /// The dial.
+    pub axis: Axis,
+    /// Of the RMSE.
+    pub rmse: f64,
+    /// Of the largest error.
+    pub max: f64,
+}
+
+/// The cheapest setting that keeps an error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Suggestion {
+    /// The error that is to be kept, in codes.
+    pub asked: f64,
+    /// The number of the point.
+    pub point: usize,
+    /// Its largest error, the truth's uncertainty added.
+    pub at_most: f64,
+    /// What is left of the error that was asked for.
+    pub margin: f64,
+}
+
+/// Changes below this many codes are seen by no one: a fifth of what rounding to a code does.
+const INVISIBLE: f64 = 0.1;
+/// Times nearer than this aren't told apart: runs on one machine differ by as much.
+const SAME_TIME: f64 = 0.03;
+/// How improbable it must be that more bounded pixels than allowed break their bound by chance, before it isn't put down to it.
+const CHANCE: f64 = 1e-3;
+/// The confidence that bounded pixels are asked for.
+const CONFIDENCE: f64 = 0.999;
+
+impl Verdict {
+    /// Of a sweep.
+    pub fn of(sweep: &Sweep) -> Verdict {
+        let places: Vec<_> = sweep.points.iter().map(|p| p.place(judged)).collect();
+        let front_ = front(&places);
+        let by_rmse: Vec<_> = sweep.points.iter().map(|p| p.place(|e| e.rmse)).collect();
+        let slopes = sweep.rows.iter().filter(|(axis, _)| axis.is_a_budget()).filter_map(|(axis, row)| {
+            let of = |all: &[(f64, f64)]| slope(&row.iter().map(|&i| all[i]).collect::<Vec<_>>());
+            Some(Slope { axis: *axis, rmse: of(&by_rmse)?, max: of(&places)? })
+        });
+        Verdict {
+            knee: knee(&places, &front_),
+            front_rmse: front(&by_rmse),
+            slopes: slopes.collect(),
+            remarks: dials(sweep).into_iter().chain(dominated(sweep, &front_)).collect(),
+            violations: violations(sweep),
+            front: front_,
+        }
+    }
+}
+
+/// The cheapest point whose largest error, with the truth's own uncertainty, is `asked` codes at most.
+pub fn suggestion(points: &[Point], asked: f64) -> Option<Suggestion> {
+    let keeps = |(_, p): &(usize, &Point)| judged(&p.errors).most <= asked;
+    let cheapest = |a: &(usize, &Point), b: &(usize, &Point)| a.1.cost.seconds.total_cmp(&b.1.cost.seconds);
+    let (point, found) = points.iter().enumerate().filter(keeps).min_by(cheapest)?;
+    let at_most = judged(&found.errors).most;
+    Some(Suggestion { asked, point, at_most, margin: asked - at_most })
+}
+
+/// What turning depth, precision and certificates does.
+fn dials(sweep: &Sweep) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let own = &sweep.points[0];
+    for (axis, row) in &sweep.rows {
+        let points = row.iter().map(|&i| &sweep.points[i]);
+        match axis {
+            Axis::Depth => {
+                let depth = own.setting.depth;
+                let shallow = points.clone().find(|p| p.setting.depth < depth && p.change <= INVISIBLE);
+                if let Some(p) = shallow {
+                    let cost = costs(own.cost.seconds, p.cost.seconds);
+                    remarks.push(format!(
+                        "depth {depth} {cost} more than depth {} and changes nothing above {} in this scene",
+                        p.setting.depth,
+                        above(p.change)
+                    ));
+                }
+                for p in points.filter(|p| p.setting.depth > depth) {
+                    let cost = costs(p.cost.seconds, own.cost.seconds);
+                    let deeper = p.setting.depth;
+                    remarks.push(match p.change <= INVISIBLE {
+                        true => format!(
+                            "depth {deeper} {cost} more than depth {depth} and changes nothing above {} in this scene",
+                            above(p.change)
+                        ),
+                        false => format!(
+                            "depth {deeper} changes the picture by up to {}/255: the scene's limit of {depth} cuts light off",
+                            number(p.change)
+                        ),
+                    });
+                }
+            }
+            Axis::Precision => {
+                for p in points.filter(|p| p.setting.precision != own.setting.precision) {
+                    remarks.push(format!(
+                        "{} takes {} the time and changes the picture by up to {}/255",
+                        p.setting.words(&sweep.base),
+                        share(p.cost.seconds / own.cost.seconds),
+                        number(p.change)
+                    ));
+                }
+            }
+            Axis::Certificates => {
+                for p in points {
+                    let Way::Sampled(codes) = p.setting.way else { continue };
+                    let with = sweep.points.iter().find(|q| q.setting.way == Way::Error(codes));
+                    if let Some(with) = with {
+                        remarks.push(format!(
+                            "without certificates, max error {}/255 takes {} the time, and none of it is proved",
+                            number(codes),
+                            share(p.cost.seconds / with.cost.seconds)
+                        ));
+                    }
+                }
+            }
+            Axis::Error | Axis::Samples | Axis::Time => {}
+        }
+    }
+    remarks
+}
+
+/// What another setting beats in both.
+fn dominated(sweep: &Sweep, front: &[usize]) -> Vec<String> {
+    let beaten = |(i, p): (usize, &Point)| {
+        // The most exact of those that take no longer: the last of them on the front.
+        let by = *front.iter().rev().find(|&&f| sweep.points[f].cost.seconds <= p.cost.seconds)?;
+        if front.contains(&i) {
+            return None;
+        }
+        let better = &sweep.points[by];
+        let (a, b) = (judged(&better.errors).value, judged(&p.errors).value);
+        Some(format!(
+            "{} is dominated: {} takes {} its time and errs by {}/255 instead of {}/255",
+            p.setting.words(&sweep.base),
+            better.setting.words(&sweep.base),
+            share(better.cost.seconds / p.cost.seconds),
+            number(a),
+            number(b)
+        ))
+    };
+    sweep.points.iter().enumerate().filter_map(beaten).collect()
+}
+
+/// What must hold and doesn't.
+fn violations(sweep: &Sweep) -> Vec<String> {
+    let mut out = Vec::new();
+    for p in &sweep.points {
+        let name = p.setting.words(&sweep.base);
+        let Some(claim) = p.claim else { continue };
+        if p.broken.proved > 0 {
+            out.push(format!("{name}: {} pixels that were proved are further off than proved", p.broken.proved));
+        }
+        if chance(p.broken.bounded, claim.bounded as f64 * (1.0 - CONFIDENCE)) < CHANCE {
+            out.push(format!(
+                "{name}: {} of {} bounded pixels are further off than said, one in a thousand may be",
+                p.broken.bounded, claim.bounded
+            ));
+        }
+        // Where nothing else is said, what is said of the whole picture must hold as it stands.
+        let least = judged(&p.errors).least;
+        if claim.bounded + claim.estimated + claim.open == 0 && least > claim.codes + INVISIBLE {
+            out.push(format!("{name}: says {}/255 and errs by {}/255", number(claim.codes), number(least)));
+        }
+    }
+    for (axis, row) in sweep.rows.iter().filter(|(axis, _)| axis.is_a_budget()) {
+        // A limit beyond the scene's own makes another picture than the scene asks for.
+        let row: Vec<&Point> =
+            row.iter().map(|&i| &sweep.points[i]).filter(|p| p.setting.depth <= sweep.base.depth).collect();
+        for pair in row.windows(2) {
+            let [before, after] = [pair[0], pair[1]].map(|p| p.errors.rmse);
+            if after.least > before.most {
+                out.push(format!(
+                    "{}: {} errs by more than {}, with an RMSE of {}/255 instead of {}/255",
+                    axis.word(),
+                    pair[1].setting.words(&sweep.base),
+                    pair[0].setting.words(&sweep.base),
+                    number(after.value),
+                    number(before.value)
+                ));
+            }
+        }
+    }
+    out
+}
+
+/// The probability of `n` events or more where `mean` are expected: Poisson's, which is the binomial's for rare events.
+fn chance(n: usize, mean: f64) -> f64 {
+    let mut fewer = 0.0;
+    let mut term = fun::exp(-mean);
+    for k in 0..n {
+        fewer += term;
+        term *= mean / (k + 1) as f64;
+    }
+    1.0 - fewer
+}
+
+/// `costs 31 %`, or that it costs nothing that could be told.
+fn costs(dearer: f64, cheaper: f64) -> String {
+    let more = dearer / cheaper - 1.0;
+    if more < SAME_TIME { "costs nothing".into() } else { format!("costs {:.0} %", 100.0 * more) }
+}
+
+/// Of a time.
+fn share(ratio: f64) -> String {
+    match ratio {
+        _ if ratio < 0.995 => format!("{ratio:.2} of"),
+        _ if ratio < 10.0 => format!("{ratio:.1} times"),
+        _ => format!("{ratio:.0} times"),
+    }
+}
+
+/// A bound for a change that is invisible: 16-bit codes tell no finer than this.
+fn above(change: f64) -> String {
+    if change == 0.0 { "0.004/255".into() } else { format!("{}/255", number(change)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chances_are_poissons() {
+        assert_eq!(chance(0, 3.0), 1.0);
+        assert!((chance(1, 0.5) - (1.0 - (-0.5f64).exp())).abs() < 1e-15);
+        assert!(chance(1, 1e-6) < CHANCE && chance(1, 0.05) > CHANCE && chance(40, 3.0) < 1e-12);
+    }
+
+    #[test]
+    fn words_for_times() {
+        assert_eq!(costs(1.31, 1.0), "costs 31 %");
+        assert_eq!(costs(1.01, 1.0), "costs nothing");
+        assert_eq!([0.4, 1.26, 12.3].map(share), ["0.40 of", "1.3 times", "12 times"]);
+    }
+}
