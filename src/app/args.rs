@@ -1,8 +1,8 @@
 //! The command line. Values are checked, in `argument`, as far as they can be without the scene.
 
 use super::argument::{
-    address, anti_aliasing, assignment, bits, compression, crop, glob_pattern, max_error, pixel, poll_interval, precision,
-    seconds, size,
+    address, anti_aliasing, assignment, bits, compression, confidence, crop, glob_pattern, max_error, pixel,
+    poll_interval, precision, seconds, size,
 };
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
@@ -85,6 +85,45 @@ pub struct ViewArgs {
     pub precision: Option<Precision>,
 }
 
+/// How close to the truth the picture has to come, instead of how many rays a pixel.
+#[derive(Clone, Debug, Default, Args)]
+pub struct AccuracyArgs {
+    /// Largest error of any pixel, as in `2/255`; as many rays as it takes, and none where it is proved without.
+    #[arg(long, value_name = "E", value_parser = max_error, conflicts_with = "aa")]
+    pub max_error: Option<f64>,
+    /// Named errors: draft is 16/255, good 4/255, fine 1/255.
+    #[arg(long, value_enum, conflicts_with_all = ["aa", "max_error"])]
+    pub quality: Option<Quality>,
+    /// Time for tracing, as in `2s`: the picture gets as good as it can meanwhile, and says how good that is.
+    #[arg(long, value_name = "TIME", value_parser = seconds, conflicts_with = "aa")]
+    pub time: Option<f64>,
+    /// Probability of keeping the error, for a pixel where it is bounded and not proved. [default: 0.999]
+    #[arg(long, value_name = "P", value_parser = confidence, conflicts_with = "aa")]
+    pub confidence: Option<f64>,
+}
+
+/// `--quality`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// 16/255.
+    Draft,
+    /// 4/255.
+    Good,
+    /// 1/255.
+    Fine,
+}
+
+impl Quality {
+    /// The error that it names.
+    pub fn max_error(self) -> f64 {
+        match self {
+            Quality::Draft => 16.0 / 255.0,
+            Quality::Good => 4.0 / 255.0,
+            Quality::Fine => 1.0 / 255.0,
+        }
+    }
+}
+
 /// `rtdsl render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
@@ -98,6 +137,18 @@ pub struct RenderArgs {
     /// The view.
     #[command(flatten)]
     pub view: ViewArgs,
+    /// The accuracy.
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
+    /// Write a picture of each pixel's error: .png (white is the error asked for, red beyond it) or .exr (in shares of white).
+    #[arg(long, value_name = "FILE", conflicts_with = "aa")]
+    pub error_map: Option<PathBuf>,
+    /// Write a picture of how sure each pixel is: proved green, bounded blue, estimated orange, open red.
+    #[arg(long, value_name = "FILE", conflicts_with = "aa")]
+    pub status_map: Option<PathBuf>,
+    /// End with 4 where a pixel doesn't reach the error asked for.
+    #[arg(long, conflicts_with = "aa")]
+    pub strict: bool,
     /// Make only this part of the picture, in pixels from its top left corner.
     #[arg(long, value_name = "X,Y,W,H", value_parser = crop, allow_hyphen_values = true)]
     pub crop: Option<Crop>,
@@ -131,6 +182,9 @@ pub struct WatchArgs {
     /// The view.
     #[command(flatten)]
     pub view: ViewArgs,
+    /// The accuracy.
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
     /// Show the picture on a live page: at ADDR, or on this machine alone at any free port.
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", value_parser = address)]
     pub serve: Option<SocketAddr>,

@@ -1,6 +1,7 @@
 //! The program: one file a command, and what several of them need. Only this floor prints, reads arguments and knows exit
 //! codes.
 
+pub mod accuracy;
 pub mod args;
 mod argument;
 pub mod check;
@@ -10,6 +11,7 @@ pub mod gallery;
 pub mod help;
 pub mod load;
 mod make;
+mod map;
 pub mod params;
 pub mod picture;
 pub mod preview;

@@ -66,6 +66,7 @@ struct Start<R: Real> {
 }
 
 impl<R: Real> Start<R> {
+    #[inline(always)]
     fn at_eye(d: [R; 3]) -> Start<R> {
         Start {
             o: [R::zero(); 3],

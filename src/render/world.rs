@@ -118,6 +118,7 @@ impl World {
             let around = neighbourhood(light.at);
             let mut near: Vec<u32> = self.unbounded.iter().map(|p| p.id).collect();
             self.bvh.gather(
+                usize::MAX,
                 |b| b.overlaps(&around),
                 |id| {
                     near.push(id);

@@ -4,6 +4,7 @@
 //! evaluated for all rays of a region at once, as [`Form`](crate::math::Form)s, and the region is cut where a test is undecided. What no cut
 //! can tell apart is charged. See [`Certifier::region`].
 
+mod asked;
 mod bound;
 mod bundle;
 mod certifier;
@@ -27,6 +28,8 @@ mod texels;
 mod visible;
 mod waves;
 
+pub use asked::Certificate;
+pub(super) use asked::render;
 pub use bound::Bound;
 pub use certifier::Certifier;
 pub use picture::{Control, certify, refine};

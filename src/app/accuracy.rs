@@ -1,0 +1,104 @@
+//! A picture that is asked for by its accuracy: what the command line adds to the scene, and the one line that is said of it.
+
+use super::Stop;
+use super::args::AccuracyArgs;
+use crate::diag::Diagnostic;
+use crate::film::{Depth, Format};
+use crate::render::Options;
+use crate::render::certify::Certificate;
+use crate::scene::{Accuracy, Precision};
+
+impl AccuracyArgs {
+    /// Puts what is asked for into `options`, which are the scene's, for a file of `format`. `is_wide` says that the command
+    /// line itself asks for 32 bits.
+    ///
+    /// # Errors
+    /// Not all of it can be had together.
+    pub fn apply(&self, options: &mut Options, format: Format, asks_f32: bool) -> Result<(), Stop> {
+        let error = self.max_error.or(self.quality.map(|q| q.max_error()));
+        let given = options.accuracy;
+        // Either of them replaces both of the scene's.
+        let (error, time) = match (error, self.time) {
+            (None, None) => given.map_or((None, None), |a| (a.error, a.time)),
+            given => given,
+        };
+        if error.is_none() && time.is_none() {
+            return match self.confidence {
+                None => Ok(()),
+                Some(_) => {
+                    let d = Diagnostic::error("`--confidence` is for pictures with a stated error");
+                    Err(Stop::usage(d.note("say which: `--max-error 2/255`")))
+                }
+            };
+        }
+        if asks_f32 {
+            let d = Diagnostic::error("a picture with a stated error needs 64 bits");
+            return Err(Stop::usage(d.note("what 32 bits lose isn't known: leave out `--precision f32`")));
+        }
+        let confidence = self.confidence.or(given.map(|a| a.confidence)).unwrap_or(Accuracy::CONFIDENCE);
+        options.accuracy = Some(Accuracy { error, time, confidence });
+        options.precision = Precision::F64;
+        options.quantum = match format {
+            Format::Png(Depth::Eight, _) => 1.0 / 255.0,
+            Format::Png(Depth::Sixteen, _) => 1.0 / 65_535.0,
+            Format::Exr => 0.0,
+            Format::Hdr => {
+                let d = Diagnostic::error("an `.hdr` file can't keep a stated error");
+                let note = "its colours share an exponent, which costs the darker channels their precision";
+                return Err(Stop::usage(d.note(note).note("write a `.png` or an `.exr`")));
+            }
+        };
+        match error {
+            Some(error) if error <= 0.5 * options.quantum => {
+                let d =
+                    Diagnostic::error(format!("{} is less than this file's colours can tell apart", fraction(error)));
+                let note = format!("rounding alone is up to {}", fraction(0.5 * options.quantum));
+                Err(Stop::usage(d.note(note).note("`--bits 16` or an `.exr` file round less")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// An error in codes of 8 bits: `2/255`.
+pub fn fraction(error: f64) -> String {
+    let codes = error * 255.0;
+    // Four digits, but none behind whole numbers: 2/255 isn't exactly two codes.
+    let text = format!("{codes:.3}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "0" => format!("{codes:.1e}/255"),
+        text => format!("{text}/255"),
+    }
+}
+
+/// `max error 2/255: 93.3 % proved, 6.5 % bounded at 99.9 %, 0.2 % estimated, 0 open`.
+pub fn line(c: &Certificate) -> String {
+    let s = &c.summary;
+    let of = |n: usize| share(n, s.pixels());
+    let bounded = match s.bounded {
+        0 => "0 bounded".to_string(),
+        n => format!("{} bounded at {} %", of(n), trimmed(100.0 * c.accuracy.confidence, 7)),
+    };
+    let (error, proved) = (fraction(c.reached / 255.0), of(s.proved));
+    format!("max error {error}: {proved} proved, {bounded}, {} estimated, {} open", of(s.estimated), of(s.open))
+}
+
+/// So many of so many, in per cent; never rounded to none or to all.
+fn share(n: usize, all: usize) -> String {
+    let percent = 100.0 * n as f64 / all.max(1) as f64;
+    match n {
+        0 => "0".into(),
+        n if n == all => "100 %".into(),
+        _ if percent < 0.001 => "under 0.001 %".into(),
+        // Downwards above a half, so that 99.96 isn't all.
+        _ if percent > 50.0 => format!("{} %", trimmed((percent * 100.0).floor() / 100.0, 2)),
+        _ => format!("{} %", trimmed(percent, 3)),
+    }
+}
+
+/// With so many decimals, but no zeros at the end.
+fn trimmed(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
