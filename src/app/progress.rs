@@ -69,9 +69,9 @@ impl Steps {
         Steps(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
     }
 
-    /// So many steps are to be done altogether.
-    pub fn lengthen_to(&self, steps: u64) {
-        self.0.set_length(steps);
+    /// So many steps more are to be done.
+    pub fn lengthen(&self, steps: u64) {
+        self.0.inc_length(steps);
     }
 
     /// A step begins.

@@ -17,7 +17,8 @@ impl Clock {
     /// Seconds since, and seconds of all this process's threads; `None` where the system doesn't tell.
     pub fn read(&self) -> (f64, Option<f64>) {
         let wall = self.wall.elapsed().as_secs_f64();
-        let processors = processor_time().zip(self.processors).map(|(now, then)| now.saturating_sub(then).as_secs_f64());
+        let processors =
+            processor_time().zip(self.processors).map(|(now, then)| now.saturating_sub(then).as_secs_f64());
         (wall, processors)
     }
 }

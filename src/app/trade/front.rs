@@ -13,7 +13,9 @@ pub fn dominates(a: Place, b: Place) -> bool {
 /// The numbers of the places that none dominates, from the fastest to the most exact. Of equal ones, the first stands for all.
 pub fn front(places: &[Place]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..places.len()).collect();
-    order.sort_by(|&i, &j| places[i].0.total_cmp(&places[j].0).then(places[i].1.total_cmp(&places[j].1)).then(i.cmp(&j)));
+    order.sort_by(|&i, &j| {
+        places[i].0.total_cmp(&places[j].0).then(places[i].1.total_cmp(&places[j].1)).then(i.cmp(&j))
+    });
     let mut front: Vec<usize> = Vec::new();
     for i in order {
         // From the fastest on: only a smaller error earns a place.
@@ -71,8 +73,17 @@ mod tests {
 
     #[test]
     fn none_on_the_front_is_dominated_and_all_others_are() {
-        let places =
-            [(1.0, 9.0), (2.0, 9.5), (2.0, 4.0), (3.0, 4.0), (5.0, 1.0), (4.0, 6.0), (9.0, 0.5), (1.0, 9.0), (9.0, 0.7)];
+        let places = [
+            (1.0, 9.0),
+            (2.0, 9.5),
+            (2.0, 4.0),
+            (3.0, 4.0),
+            (5.0, 1.0),
+            (4.0, 6.0),
+            (9.0, 0.5),
+            (1.0, 9.0),
+            (9.0, 0.7),
+        ];
         let front = front(&places);
         assert_eq!(front, [0, 2, 4, 6]);
         for i in 0..places.len() {

@@ -17,8 +17,7 @@ pub fn difference(a: &[u8], b: &[u8]) -> Vec<u8> {
 /// Those of the encoder.
 pub fn link(codes: &[u8], size: [u32; 2]) -> io::Result<String> {
     let mut file = Cursor::new(Vec::new());
-    let mut writer =
-        PngWriter::new(&mut file, (size[0], size[1]), (Depth::Eight, Compression::Small), &Recipe::new())?;
+    let mut writer = PngWriter::new(&mut file, (size[0], size[1]), (Depth::Eight, Compression::Small), &Recipe::new())?;
     writer.rows(codes)?;
     writer.finish()?;
     Ok(format!("data:image/png;base64,{}", base64(file.get_ref())))
@@ -47,7 +46,8 @@ mod tests {
     /// The vectors of RFC 4648, section 10.
     #[test]
     fn letters_of_bytes() {
-        let cases = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
+        let cases =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
         for (bytes, text) in cases {
             assert_eq!(base64(bytes.as_bytes()), text);
         }

@@ -30,7 +30,7 @@ pub struct Cost {
     pub runs: u32,
     /// Rays from the camera.
     pub camera_rays: u64,
-    /// Rays of all kinds; `None` where only those from the camera are counted.
+    /// Rays of all kinds; `None` where an error is asked for: then only those from the camera are counted.
     pub rays: Option<u64>,
     /// Regions whose light was bounded.
     pub bounds: u64,
@@ -63,57 +63,41 @@ pub struct Made {
     pub certified: Vec<Pixel>,
 }
 
-/// Errors that are asked for one after another while there is time, in codes: each halves the one before nearly, so that what is
-/// lost with the last is no more than what it took to get there.
-pub const LADDER: [f64; 9] = [128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.75];
-
 impl Maker<'_> {
     /// The picture in `setting`; `None` where it wasn't finished within so many seconds.
     pub fn make(&self, setting: &Setting, seconds: f64) -> Option<Made> {
         let options = setting.options(self.options);
-        match setting.way {
-            Way::Grid(_) => self.grid(&options, seconds),
-            Way::Error(codes) => self.certified(&options, &[Target::new(codes)], seconds, false),
-            Way::Sampled(codes) => {
-                let target = Target { certificates: false, ..Target::new(codes) };
-                self.certified(&options, &[target], seconds, false)
-            }
-            Way::Time(time) => self.certified(&options, &LADDER.map(Target::new), time, true),
+        if let Way::Sampled(codes) = setting.way {
+            return self.sampled(&options, codes, seconds);
         }
-    }
-
-    fn grid(&self, options: &Options, seconds: f64) -> Option<Made> {
         let clock = Clock::start();
-        let rendered = self.budget.within(seconds, |cancel| render::render(self.world, options, &Silent, cancel))?;
-        let cost = Cost {
-            camera_rays: rendered.rays.camera,
-            rays: Some(Rays::from(rendered.rays).total),
-            ..once(&clock)
+        let rendered = self.budget.within(seconds, |cancel| render::render(self.world, &options, &Silent, cancel))?;
+        let mut cost = once(&clock);
+        cost.camera_rays = rendered.rays.camera;
+        let pixels = rendered.film.pixels;
+        let Some(certificate) = rendered.certificate else {
+            cost.rays = Some(Rays::from(rendered.rays).total);
+            return Some(Made { pixels, cost, claim: None, certified: Vec::new() });
         };
-        Some(Made { pixels: rendered.film.pixels, cost, claim: None, certified: Vec::new() })
+        cost.bounds = certificate.summary.evaluations;
+        let claim = Some(Claim::of(&certificate.summary));
+        Some(Made { pixels, cost, claim, certified: certificate.pixels })
     }
 
-    /// One target after another; what the last didn't reach keeps what the one before gave, if it is wanted `unfinished`.
-    fn certified(&self, options: &Options, targets: &[Target], seconds: f64, unfinished: bool) -> Option<Made> {
+    /// The same as an error that is asked for, without bounds of regions.
+    fn sampled(&self, options: &Options, codes: f64, seconds: f64) -> Option<Made> {
         let clock = Clock::start();
-        let mut pixels = vec![Pixel::unknown(); options.width as usize * options.height as usize];
-        let done = self.budget.within(seconds, |cancel| climb(self.world, options, targets, &mut pixels, cancel));
-        let cost = once(&clock);
-        if self.budget.is_interrupted() || !(done || unfinished) {
+        let target = Target { certificates: false, ..Target::new(codes) };
+        let mut certified = vec![Pixel::unknown(); options.width as usize * options.height as usize];
+        let climb = |cancel: &AtomicBool| climb(self.world, options, &[target], &mut certified, cancel);
+        if !self.budget.within(seconds, climb) {
             return None;
         }
-        let asked = if unfinished { f64::INFINITY } else { targets.last()?.codes };
-        let summary = Summary::of(&pixels, asked);
-        let claim = Claim {
-            codes: summary.worst_codes(),
-            proved: summary.proved,
-            bounded: summary.bounded,
-            estimated: summary.estimated,
-            open: summary.open,
-        };
-        let cost = Cost { camera_rays: summary.samples, rays: None, bounds: summary.evaluations, ..cost };
-        let light = pixels.iter().map(|p| p.value.map(|v| v as f32)).collect();
-        Some(Made { pixels: light, cost, claim: Some(claim), certified: pixels })
+        let cost = once(&clock);
+        let summary = Summary::of(&certified, codes);
+        let cost = Cost { camera_rays: summary.samples, bounds: summary.evaluations, ..cost };
+        let pixels = certified.iter().map(|p| p.value.map(|v| v as f32)).collect();
+        Some(Made { pixels, cost, claim: Some(Claim::of(&summary)), certified })
     }
 }
 
@@ -122,6 +106,13 @@ pub fn climb(world: &World, options: &Options, targets: &[Target], pixels: &mut 
     targets.iter().all(|target| {
         !cancel.load(SeqCst) && refine(world, options, target, pixels, Control { progress: &Silent, cancel })
     })
+}
+
+impl Claim {
+    fn of(summary: &Summary) -> Claim {
+        let Summary { proved, bounded, estimated, open, .. } = *summary;
+        Claim { codes: summary.worst_codes(), proved, bounded, estimated, open }
+    }
 }
 
 fn once(clock: &Clock) -> Cost {

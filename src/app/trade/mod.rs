@@ -69,14 +69,21 @@ pub fn run(args: &TradeArgs) -> Result<Exit, Stop> {
         }
         user.interrupt();
     });
-    let mut axes: Vec<Axis> = if args.axis.is_empty() { Axis::ALL.into() } else { args.axis.iter().map(|a| a.axis()).collect() };
+    let mut axes: Vec<Axis> =
+        if args.axis.is_empty() { Axis::ALL.into() } else { args.axis.iter().map(|a| a.axis()).collect() };
     // What 32 bits can't hold isn't traced with them.
     axes.retain(|axis| *axis != Axis::Precision || world.beyond_f32().is_none());
     let maker = Maker { world: &world, options: &options, budget: &budget };
     let swept = sweep(&maker, Setting::of(&options), &axes, &bar);
     bar.clear();
     let Some(swept) = swept else {
-        return Err(Stop::system("nothing was measured", io::ErrorKind::Interrupted.into()));
+        return Err(match budget.is_interrupted() {
+            true => Stop::system("nothing was measured", io::ErrorKind::Interrupted.into()),
+            false => {
+                let d = Diagnostic::error("the scene's own picture takes longer than all that is to be measured may");
+                Stop::usage(d.note("give it more time with `--budget`, or a smaller picture with `--size`"))
+            }
+        });
     };
 
     let asked = args.suggest.map(|share| 255.0 * share);
@@ -179,9 +186,14 @@ impl Bar {
 }
 
 impl Told for Bar {
-    fn begin(&self, what: &'static str, steps: usize) {
+    fn expect(&self, steps: usize) {
         if let Some(bar) = &self.0 {
-            bar.lengthen_to(steps as u64);
+            bar.lengthen(steps as u64);
+        }
+    }
+
+    fn begin(&self, what: &'static str) {
+        if let Some(bar) = &self.0 {
             bar.begin(what);
         }
     }

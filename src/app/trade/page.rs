@@ -116,5 +116,8 @@ pub fn page(sweep: &Sweep, report: &Report, plot: &str) -> io::Result<String> {
     // By the name's ending, values are escaped.
     env.add_template("trade.html", include_str!("templates/trade.html")).map_err(io::Error::other)?;
     let template = env.get_template("trade.html").map_err(io::Error::other)?;
-    template.render(minijinja::Value::from(minijinja::value::Serde(page))).map(|html| html + "\n").map_err(io::Error::other)
+    template
+        .render(minijinja::Value::from(minijinja::value::Serde(page)))
+        .map(|html| html + "\n")
+        .map_err(io::Error::other)
 }

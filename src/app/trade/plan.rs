@@ -44,9 +44,7 @@ pub fn positions(axis: Axis, base: &Setting) -> Vec<Setting> {
             depths.dedup();
             depths.into_iter().map(|depth| Setting { depth, ..*base }).collect()
         }
-        Axis::Precision => {
-            [Precision::F32, Precision::F64].map(|precision| Setting { precision, ..*base }).into()
-        }
+        Axis::Precision => [Precision::F32, Precision::F64].map(|precision| Setting { precision, ..*base }).into(),
         Axis::Certificates => SAMPLED.map(|e| way(Way::Sampled(e))).into(),
     }
 }

@@ -105,12 +105,21 @@ impl Panel<'_> {
         let points = &report.points;
         let x = Scale::over(points.iter().map(|p| p.cost.seconds), [left, right]);
         let y = Scale::over(points.iter().map(|p| positive((self.error)(p)[0])), [bottom, top]);
-        let _ = writeln!(out, "<text class=\"ink\" x=\"{left}\" y=\"{}\" font-weight=\"600\">{}</text>", top - 14.0, self.title);
+        let _ = writeln!(
+            out,
+            "<text class=\"ink\" x=\"{left}\" y=\"{}\" font-weight=\"600\">{}</text>",
+            top - 14.0,
+            self.title
+        );
         for tick in x.ticks() {
             let at = x.at(tick);
             let _ = writeln!(out, "<path class=\"grid\" d=\"M{at:.1} {top}V{bottom}\"/>");
             let label = if tick < 1.0 { format!("{} ms", short(tick * 1e3)) } else { format!("{} s", short(tick)) };
-            let _ = writeln!(out, "<text class=\"soft\" x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", bottom + 17.0);
+            let _ = writeln!(
+                out,
+                "<text class=\"soft\" x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>",
+                bottom + 17.0
+            );
         }
         for tick in y.ticks() {
             let at = y.at(tick);
@@ -175,7 +184,8 @@ impl Panel<'_> {
 
     /// Names beside the points of the front, the knee and the scene's own setting, where there is room for them.
     fn labels(&self, report: &Report, at: &dyn Fn(usize) -> (f64, f64), [left, right]: [f64; 2], out: &mut String) {
-        let marks: Vec<[f64; 4]> = (0..report.points.len()).map(at).map(|(x, y)| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
+        let marks: Vec<[f64; 4]> =
+            (0..report.points.len()).map(at).map(|(x, y)| [x - 5.0, y - 5.0, x + 5.0, y + 5.0]).collect();
         let mut taken = marks;
         let named = report.verdict.knee.into_iter().chain([0]).chain(self.front.iter().copied());
         let mut done = Vec::new();
@@ -191,7 +201,8 @@ impl Panel<'_> {
             let (px, py) = at(i);
             // Near enough for a sans-serif of this size.
             let (w, h) = (6.6 * name.chars().count() as f64, 13.0);
-            let places = [(8.0, -7.0), (8.0, 15.0), (-8.0 - w, -7.0), (-8.0 - w, 15.0), (-0.5 * w, -13.0), (-0.5 * w, 22.0)];
+            let places =
+                [(8.0, -7.0), (8.0, 15.0), (-8.0 - w, -7.0), (-8.0 - w, 15.0), (-0.5 * w, -13.0), (-0.5 * w, 22.0)];
             let free = |(dx, dy): &(f64, f64)| {
                 let this = [px + dx, py + dy - h + 3.0, px + dx + w, py + dy + 3.0];
                 let clear = |t: &[f64; 4]| t[2] <= this[0] || t[0] >= this[2] || t[3] <= this[1] || t[1] >= this[3];

@@ -2,9 +2,9 @@
 
 use super::maker::{Claim, Cost};
 use super::setting::{Axis, Setting};
+use crate::film::metric::Truth;
 use crate::film::metric::{Errors, Range};
 use crate::render::certify::{Pixel, Status};
-use crate::film::metric::Truth;
 
 /// A setting, what it took and how far its picture is from the truth.
 #[derive(Clone, Debug)]
@@ -76,7 +76,8 @@ mod tests {
     #[test]
     fn only_what_is_surely_broken_counts() {
         let light = |code: f64| [decode_srgb(code / 255.0); 3];
-        let truth = Truth::new(4, 1, [(light(100.0), 0.5), (light(100.0), 0.5), (light(100.0), 0.5), (light(9.0), 0.5)]);
+        let truth =
+            Truth::new(4, 1, [(light(100.0), 0.5), (light(100.0), 0.5), (light(100.0), 0.5), (light(9.0), 0.5)]);
         let pixel = |codes, status| Pixel { codes, status, ..Pixel::unknown() };
         let certified = [
             pixel(2.0, Status::Proved),

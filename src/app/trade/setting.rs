@@ -2,7 +2,7 @@
 
 use crate::app::view::precision_word;
 use crate::render::Options;
-use crate::scene::{AntiAliasing, Precision};
+use crate::scene::{Accuracy, AntiAliasing, Precision};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -75,7 +75,13 @@ pub struct Setting {
 impl Setting {
     /// What the options say.
     pub fn of(options: &Options) -> Setting {
-        Setting { way: Way::Grid(options.aa.side()), depth: options.max_depth, precision: options.precision }
+        let way = match options.accuracy {
+            // Where both are asked for, the error is what is wanted of the picture.
+            Some(Accuracy { error: Some(share), .. }) => Way::Error(255.0 * share),
+            Some(Accuracy { time: Some(seconds), .. }) => Way::Time(seconds),
+            _ => Way::Grid(options.aa.side()),
+        };
+        Setting { way, depth: options.max_depth, precision: options.precision }
     }
 
     /// The options changed to this.
@@ -84,7 +90,15 @@ impl Setting {
             Way::Grid(n) if n > 1 => AntiAliasing::Grid(n),
             _ => AntiAliasing::Off,
         };
-        Options { aa, max_depth: self.depth, precision: self.precision, ..options.clone() }
+        let confidence = options.accuracy.map_or(Accuracy::CONFIDENCE, |a| a.confidence);
+        let accuracy = match self.way {
+            Way::Grid(_) => None,
+            Way::Error(codes) | Way::Sampled(codes) => {
+                Some(Accuracy { error: Some(codes / 255.0), time: None, confidence })
+            }
+            Way::Time(seconds) => Some(Accuracy { error: None, time: Some(seconds), confidence }),
+        };
+        Options { aa, accuracy, max_depth: self.depth, precision: self.precision, ..options.clone() }
     }
 
     /// In words: the way, and whatever else isn't as in `base`.

@@ -35,8 +35,10 @@ pub struct LeftOut {
 
 /// Told of what is measured.
 pub trait Told {
-    /// Something begins; `steps` of its kind are to come, this one among them.
-    fn begin(&self, what: &'static str, steps: usize);
+    /// So many steps more are to come.
+    fn expect(&self, steps: usize);
+    /// A step begins.
+    fn begin(&self, what: &'static str);
     /// It is done.
     fn end(&self);
 }
@@ -48,6 +50,8 @@ const MOST_RUNS: u32 = 5;
 const SHARE: f64 = 0.5;
 /// The share of what is left that a setting may take of which nothing is expected.
 const UNKNOWN_SHARE: f64 = 0.25;
+/// All are made again if that is expected to take this share of what is left.
+const REPEAT_SHARE: f64 = 0.8;
 /// Depth and precision change the time by less than this, or the other way.
 const ROOM: f64 = 1.5;
 
@@ -55,10 +59,11 @@ const ROOM: f64 = 1.5;
 pub fn sweep(maker: &Maker<'_>, base: Setting, axes: &[Axis], told: &dyn Told) -> Option<Sweep> {
     let plans: Vec<(Axis, Vec<Setting>)> = axes.iter().map(|axis| (*axis, positions(*axis, &base))).collect();
     let steps = plans.iter().map(|(_, settings)| settings.len()).sum::<usize>();
-    told.begin("the scene's own setting", steps + 2);
+    told.expect(steps + 2);
+    told.begin("the scene's own setting");
     let first = maker.make(&base, f64::INFINITY)?;
     told.end();
-    told.begin("the reference", steps + 1);
+    told.begin("the reference");
     let reference = Reference::make(maker, &base, first.cost.seconds)?;
     told.end();
 
@@ -71,7 +76,7 @@ pub fn sweep(maker: &Maker<'_>, base: Setting, axes: &[Axis], told: &dyn Told) -
     for step in 0..longest {
         for ((axis, settings), row) in plans.iter().zip(&mut rows) {
             let Some(setting) = settings.get(step).filter(|_| !maker.budget.is_interrupted()) else { continue };
-            told.begin(axis.word(), steps);
+            told.begin(axis.word());
             row.push(sweep.measure(maker, *axis, setting, &own));
             told.end();
         }
@@ -165,16 +170,19 @@ impl Sweep {
     /// Makes all of them again, as often as the budget allows: times scatter, and the least says most.
     fn repeat(&mut self, maker: &Maker<'_>, told: &dyn Told) {
         // What is given a time takes that time.
-        let is_timed = |p: &Point| !matches!(p.setting.way, Way::Time(_));
+        let mut again: Vec<usize> = (0..self.points.len()).collect();
+        again.retain(|&i| !matches!(self.points[i].setting.way, Way::Time(_)));
         for _ in 1..MOST_RUNS {
-            let again: f64 = self.points.iter().filter(|p| is_timed(p)).map(|p| p.cost.seconds).sum();
-            if again > 0.8 * maker.budget.left() {
+            let seconds: f64 = again.iter().map(|&i| self.points[i].cost.seconds).sum();
+            if seconds > REPEAT_SHARE * maker.budget.left() {
                 return;
             }
-            for point in self.points.iter_mut().filter(|p| is_timed(p)) {
-                told.begin("times again", 1);
-                let Some(made) = maker.make(&point.setting, f64::INFINITY) else { return };
-                point.cost = point.cost.or(&made.cost);
+            told.expect(again.len());
+            for &i in &again {
+                told.begin("times again");
+                let Some(made) = maker.make(&self.points[i].setting, f64::INFINITY) else { return };
+                self.points[i].cost = self.points[i].cost.or(&made.cost);
+                told.end();
             }
         }
     }

@@ -8,9 +8,8 @@ use anstyle::{AnsiColor, Style};
 use std::fmt::Write as _;
 
 /// The heads of the table's columns.
-pub const HEADS: [&str; 13] = [
-    "setting", "wall", "cpu", "runs", "camera rays", "bounds", "max", "±", "p99", "RMSE", "PSNR", "relMSE", "FLIP",
-];
+pub const HEADS: [&str; 13] =
+    ["setting", "wall", "cpu", "runs", "camera rays", "bounds", "max", "±", "p99", "RMSE", "PSNR", "relMSE", "FLIP"];
 
 /// A point in words, a cell for each of [`HEADS`].
 pub fn cells(row: &Row) -> [String; 13] {
@@ -144,11 +143,19 @@ pub fn recommendation(report: &Report) -> String {
         ),
         (Some(asked), None) => {
             let best = report.points.iter().map(|p| p.max[2]).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
-            format!("for {}/255: none of these settings keeps it; the best is at most {}/255\n", number(asked), number(best))
+            format!(
+                "for {}/255: none of these settings keeps it; the best is at most {}/255\n",
+                number(asked),
+                number(best)
+            )
         }
         (None, _) => match report.verdict.knee {
             Some(knee) => {
-                format!("the knee: {}: errs by {}/255; what is dearer buys less for its time\n", named(knee), number(report.points[knee].max[0]))
+                format!(
+                    "the knee: {}: errs by {}/255; what is dearer buys less for its time\n",
+                    named(knee),
+                    number(report.points[knee].max[0])
+                )
             }
             None => match (report.verdict.front.first(), report.verdict.front.last()) {
                 (Some(&fast), Some(&exact)) if fast != exact => {
