@@ -9,7 +9,7 @@ use crate::render::certify::Certificate;
 use crate::scene::{Accuracy, Precision};
 
 impl AccuracyArgs {
-    /// Puts what is asked for into `options`, which are the scene's, for a file of `format`. `is_wide` says that the command
+    /// Puts what is asked for into `options`, which are the scene's, for a file of `format`. `asks_f32` says that the command
     /// line itself asks for 32 bits.
     ///
     /// # Errors
@@ -101,4 +101,48 @@ fn share(n: usize, all: usize) -> String {
 fn trimmed(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$}");
     text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Compression;
+    use crate::render::certify::{Pixel, Status, Summary};
+    use crate::scene::Settings;
+
+    #[test]
+    fn the_line_neither_hides_nor_rounds_away() {
+        let mut pixels = vec![Pixel { status: Status::Proved, codes: 1.0, ..Pixel::unknown() }; 100_000];
+        let certificate = |pixels: &[Pixel]| Certificate {
+            accuracy: Accuracy { error: None, time: None, confidence: 0.999 },
+            reached: 2.0,
+            summary: Summary::of(pixels, 2.0),
+            pixels: pixels.to_vec(),
+        };
+        let all = "max error 2/255: 100 % proved, 0 bounded, 0 estimated, 0 open";
+        assert_eq!(line(&certificate(&pixels)), all);
+        pixels[7].status = Status::Open;
+        pixels[9].status = Status::Bounded;
+        let some = "max error 2/255: 99.99 % proved, 0.001 % bounded at 99.9 %, 0 estimated, 0.001 % open";
+        assert_eq!(line(&certificate(&pixels)), some);
+        assert_eq!([2.0, 0.25, 16.0, 1e-4].map(|c| fraction(c / 255.0)), ["2/255", "0.25/255", "16/255", "1.0e-4/255"]);
+    }
+
+    #[test]
+    fn the_command_line_replaces_the_scene() {
+        let of_scene = Accuracy { error: Some(0.1), time: Some(3.0), confidence: 0.999 };
+        let settings = Settings { accuracy: Some(of_scene), precision: Precision::F32, ..Settings::default() };
+        let apply = |args: AccuracyArgs, format| {
+            let mut options = Options::from_settings(&settings);
+            args.apply(&mut options, format, false).map(|()| options)
+        };
+        let plain = apply(AccuracyArgs::default(), Format::PNG).unwrap();
+        assert_eq!((plain.accuracy, plain.precision), (Some(of_scene), Precision::F64));
+        let time = apply(AccuracyArgs { time: Some(1.0), ..AccuracyArgs::default() }, Format::Exr).unwrap();
+        assert_eq!(time.accuracy, Some(Accuracy { error: None, time: Some(1.0), confidence: 0.999 }));
+        assert_eq!(time.quantum, 0.0);
+        let tight = || AccuracyArgs { max_error: Some(0.4 / 255.0), ..AccuracyArgs::default() };
+        assert!(apply(tight(), Format::PNG).is_err() && apply(tight(), Format::Hdr).is_err());
+        assert!(apply(tight(), Format::Png(Depth::Sixteen, Compression::Fast)).is_ok());
+    }
 }

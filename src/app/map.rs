@@ -61,7 +61,8 @@ impl<'p> Map<'p> {
             // Numbers for programs.
             (Kind::Error, Format::Exr | Format::Hdr) => [(pixel.codes / 255.0) as f32; 3],
             (Kind::Error, Format::Png(..)) if !pixel.keeps(codes) => shown([255, 0, 0]),
-            (Kind::Error, Format::Png(..)) => shown([(255.0 * (pixel.codes / codes).min(1.0)).round() as u8; 3]),
+            // At most 255: the pixel keeps what was asked for.
+            (Kind::Error, Format::Png(..)) => shown([(255.0 * pixel.codes / codes).round() as u8; 3]),
         }
     }
 }

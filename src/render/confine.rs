@@ -54,10 +54,11 @@ impl<'v, R: Real, V: Visit<R>> Confined<'v, R, V> {
     /// Crossings of rays from `o` along `d`, within `bounds`, if there are any.
     #[inline(always)]
     pub fn new(bounds: Option<&Bounds>, (o, d): ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
-        let stay = match bounds {
-            Some(b) => Some(Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)])),
-            None => None, // no `Option::map`: its closure would be compiled without the lanes' instructions
-        };
+        // No `Option::map`: its closure may be compiled without the lanes' instructions.
+        let mut stay = None;
+        if let Some(b) = bounds {
+            stay = Some(Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)]));
+        }
         Confined { visit, stay }
     }
 }
