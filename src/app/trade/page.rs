@@ -12,6 +12,7 @@ use std::io;
 /// What the template is given.
 #[derive(Serialize)]
 struct Page<'p> {
+    /// The scene's name without its folder.
     scene: &'p str,
     /// A few lines: what was measured, where, against what.
     heading: Vec<String>,
@@ -92,7 +93,7 @@ pub fn page(sweep: &Sweep, report: &Report, plot: &str) -> io::Result<String> {
         own: i == 0,
     };
     let page = Page {
-        scene: &report.scene,
+        scene: report.scene.rsplit(['/', '\\']).next().unwrap_or_default(),
         heading: heading(report).lines().map(String::from).collect(),
         recommendation: recommendation(report),
         plot,

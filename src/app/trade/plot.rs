@@ -111,7 +111,7 @@ impl Panel<'_> {
             top - 14.0,
             self.title
         );
-        for tick in x.ticks() {
+        for tick in x.ticks(50.0) {
             let at = x.at(tick);
             let _ = writeln!(out, "<path class=\"grid\" d=\"M{at:.1} {top}V{bottom}\"/>");
             let label = if tick < 1.0 { format!("{} ms", short(tick * 1e3)) } else { format!("{} s", short(tick)) };
@@ -121,7 +121,7 @@ impl Panel<'_> {
                 bottom + 17.0
             );
         }
-        for tick in y.ticks() {
+        for tick in y.ticks(18.0) {
             let at = y.at(tick);
             let _ = writeln!(out, "<path class=\"grid\" d=\"M{left} {at:.1}H{right}\"/>");
             let _ = writeln!(

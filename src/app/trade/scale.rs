@@ -34,10 +34,16 @@ impl Scale {
         self.start + share * (self.end - self.start)
     }
 
-    /// Values that are marked: powers of ten, times 2 and 5 where there are few of them.
-    pub fn ticks(&self) -> Vec<f64> {
+    /// Values that are marked, at least `gap` from each other: powers of ten, with numbers between them where there is room.
+    pub fn ticks(&self, gap: f64) -> Vec<f64> {
+        let decade = (self.end - self.start).abs() / (self.to - self.from);
+        let steps: &[f64] = match decade {
+            // The nearest neighbours are 1 and 2, or 1 and 3.
+            d if d * fun::log10(2.0) >= gap => &[1.0, 2.0, 5.0],
+            d if d * fun::log10(3.0) >= gap => &[1.0, 3.0],
+            _ => &[1.0],
+        };
         let decades = self.from.floor() as i32..=self.to.ceil() as i32;
-        let steps: &[f64] = if self.to - self.from > 4.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
         let all = decades.flat_map(|d| steps.iter().map(move |s| s * fun::pow(10.0, d as f64)));
         all.filter(|v| (self.from..=self.to).contains(&fun::log10(*v))).collect()
     }
@@ -53,8 +59,9 @@ mod tests {
         let (a, b, c) = (scale.at(0.1), scale.at(1.0), scale.at(10.0));
         assert!((b - 50.0).abs() < 1e-9 && ((c - b) - (b - a)).abs() < 1e-9 && a > 0.0 && c < 100.0);
         assert_eq!((scale.at(0.0), scale.at(1e9)), (0.0, 100.0));
-        let ticks = scale.ticks();
+        let ticks = scale.ticks(5.0);
         assert!(ticks.len() == 7 && (ticks[0] - 0.1).abs() < 1e-12, "{ticks:?}");
+        assert_eq!((scale.ticks(20.0).len(), scale.ticks(30.0).len()), (5, 3));
     }
 
     #[test]

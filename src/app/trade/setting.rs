@@ -157,6 +157,15 @@ pub fn number(x: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
+/// Codes, with three digits.
+pub fn digits(codes: f64) -> String {
+    match codes {
+        _ if codes >= 99.95 => format!("{codes:.0}"),
+        _ if codes >= 9.995 => format!("{codes:.1}"),
+        _ => format!("{codes:.2}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,5 +181,6 @@ mod tests {
         let timed = Setting { way: Way::Time(2.0), ..base };
         assert_eq!((timed.label(&base), timed.arguments(&base)), ("2 s".into(), Some("--time 2s".into())));
         assert_eq!(Setting { way: Way::Sampled(4.0), ..base }.arguments(&base), None);
+        assert_eq!([0.126, 9.996, 99.97, 146.2].map(digits), ["0.13", "10.0", "100", "146"]);
     }
 }

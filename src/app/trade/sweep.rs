@@ -50,6 +50,8 @@ const MOST_RUNS: u32 = 5;
 const SHARE: f64 = 0.5;
 /// The share of what is left that a setting may take of which nothing is expected.
 const UNKNOWN_SHARE: f64 = 0.25;
+/// A picture that takes less than this share of what is left is made several times at once.
+const NOTHING: f64 = 0.001;
 /// All are made again if that is expected to take this share of what is left.
 const REPEAT_SHARE: f64 = 0.8;
 /// Depth and precision change the time by less than this, or the other way.
@@ -69,7 +71,8 @@ pub fn sweep(maker: &Maker<'_>, base: Setting, axes: &[Axis], told: &dyn Told) -
 
     let own = first.pixels.clone();
     let mut sweep = Sweep { base, reference, points: Vec::new(), rows: Vec::new(), left_out: Vec::new() };
-    sweep.add(base, first, &own);
+    let base_point = sweep.add(base, first, &own);
+    sweep.settle(maker, base_point);
     let longest = plans.iter().map(|(_, settings)| settings.len()).max().unwrap_or(0);
     let mut rows: Vec<Vec<Option<usize>>> = vec![Vec::new(); plans.len()];
     // The cheapest of every dial first, so that a small budget still tells of all of them.
@@ -126,7 +129,11 @@ impl Sweep {
         let why = match why {
             Some(why) => why,
             None => match maker.make(setting, limit) {
-                Some(made) => return Some(self.add(*setting, made, own)),
+                Some(made) => {
+                    let point = self.add(*setting, made, own);
+                    self.settle(maker, point);
+                    return Some(point);
+                }
                 None if maker.budget.is_interrupted() => return None,
                 None => format!("not finished in {} s", number(left - maker.budget.left())),
             },
@@ -167,12 +174,21 @@ impl Sweep {
         }
     }
 
+    /// Makes a picture again that takes next to nothing: the first time, memory and caches are cold.
+    fn settle(&mut self, maker: &Maker<'_>, point: usize) {
+        let point = &mut self.points[point];
+        while point.cost.runs < MOST_RUNS && point.cost.seconds < NOTHING * maker.budget.left() {
+            let Some(made) = maker.make(&point.setting, f64::INFINITY) else { return };
+            point.cost = point.cost.or(&made.cost);
+        }
+    }
+
     /// Makes all of them again, as often as the budget allows: times scatter, and the least says most.
     fn repeat(&mut self, maker: &Maker<'_>, told: &dyn Told) {
         // What is given a time takes that time.
         let mut again: Vec<usize> = (0..self.points.len()).collect();
-        again.retain(|&i| !matches!(self.points[i].setting.way, Way::Time(_)));
-        for _ in 1..MOST_RUNS {
+        again.retain(|&i| !matches!(self.points[i].setting.way, Way::Time(_)) && self.points[i].cost.runs < MOST_RUNS);
+        while !again.is_empty() {
             let seconds: f64 = again.iter().map(|&i| self.points[i].cost.seconds).sum();
             if seconds > REPEAT_SHARE * maker.budget.left() {
                 return;
@@ -184,6 +200,7 @@ impl Sweep {
                 self.points[i].cost = self.points[i].cost.or(&made.cost);
                 told.end();
             }
+            again.retain(|&i| self.points[i].cost.runs < MOST_RUNS);
         }
     }
 }

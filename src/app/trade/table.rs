@@ -1,7 +1,7 @@
 //! A sweep for people, in the terminal.
 
 use super::report::{Report, Row};
-use super::setting::number;
+use super::setting::{digits, number};
 use crate::app::verify::report::Machine;
 use crate::app::words::{duration, thousands};
 use anstyle::{AnsiColor, Style};
@@ -35,15 +35,6 @@ pub fn cells(row: &Row) -> [String; 13] {
 fn half([value, least, most]: [f64; 3]) -> f64 {
     let (down, up) = (value - least, most - value);
     if down > up { down } else { up }
-}
-
-/// Codes, with three digits.
-pub fn digits(codes: f64) -> String {
-    match codes {
-        _ if codes >= 100.0 => format!("{codes:.0}"),
-        _ if codes >= 10.0 => format!("{codes:.1}"),
-        _ => format!("{codes:.2}"),
-    }
 }
 
 /// The first lines: what was measured, where, against what.

@@ -1,8 +1,8 @@
 //! What the figures mean, in words: what no longer pays, what must hold and doesn't, and what to choose.
 
-use super::front::{front, knee, slope};
+use super::front::{self, knee, slope};
 use super::point::Point;
-use super::setting::{Axis, Way, number};
+use super::setting::{Axis, Way, digits, number};
 use super::sweep::Sweep;
 use crate::film::metric::{Errors, Range};
 use crate::math::fun;
@@ -67,29 +67,44 @@ impl Verdict {
     /// Of a sweep.
     pub fn of(sweep: &Sweep) -> Verdict {
         let places: Vec<_> = sweep.points.iter().map(|p| p.place(judged)).collect();
-        let front_ = front(&places);
+        let front = front::front(&places);
         let by_rmse: Vec<_> = sweep.points.iter().map(|p| p.place(|e| e.rmse)).collect();
-        let slopes = sweep.rows.iter().filter(|(axis, _)| axis.is_a_budget()).filter_map(|(axis, row)| {
+        let slopes = sweep.rows.iter().filter(|(axis, _)| has_slope(*axis)).filter_map(|(axis, row)| {
             let of = |all: &[(f64, f64)]| slope(&row.iter().map(|&i| all[i]).collect::<Vec<_>>());
             Some(Slope { axis: *axis, rmse: of(&by_rmse)?, max: of(&places)? })
         });
         Verdict {
-            knee: knee(&places, &front_),
-            front_rmse: front(&by_rmse),
+            knee: knee(&places, &front),
+            front_rmse: front::front(&by_rmse),
             slopes: slopes.collect(),
-            remarks: dials(sweep).into_iter().chain(dominated(sweep, &front_)).collect(),
+            remarks: dials(sweep).into_iter().chain(dominated(sweep)).collect(),
             violations: violations(sweep),
-            front: front_,
+            front,
         }
     }
 }
 
-/// The cheapest point whose largest error, with the truth's own uncertainty, is `asked` codes at most.
+/// Whether each position of a dial buys accuracy for its time: what a limit of recursion cuts off comes to an end instead.
+fn has_slope(axis: Axis) -> bool {
+    matches!(axis, Axis::Error | Axis::Samples | Axis::Time)
+}
+
+/// The largest error that a picture may have: as measured, with the truth's own uncertainty, or as it says of itself where it says
+/// something of every pixel, whichever is less.
+fn at_most(p: &Point) -> f64 {
+    let measured = judged(&p.errors).most;
+    match p.claim {
+        Some(claim) if claim.open == 0 && claim.codes < measured => claim.codes,
+        _ => measured,
+    }
+}
+
+/// The cheapest point whose largest error is surely `asked` codes at most.
 pub fn suggestion(points: &[Point], asked: f64) -> Option<Suggestion> {
-    let keeps = |(_, p): &(usize, &Point)| judged(&p.errors).most <= asked;
+    let keeps = |(_, p): &(usize, &Point)| at_most(p) <= asked;
     let cheapest = |a: &(usize, &Point), b: &(usize, &Point)| a.1.cost.seconds.total_cmp(&b.1.cost.seconds);
     let (point, found) = points.iter().enumerate().filter(keeps).min_by(cheapest)?;
-    let at_most = judged(&found.errors).most;
+    let at_most = at_most(found);
     Some(Suggestion { asked, point, at_most, margin: asked - at_most })
 }
 
@@ -155,26 +170,31 @@ fn dials(sweep: &Sweep) -> Vec<String> {
     remarks
 }
 
-/// What another setting beats in both.
-fn dominated(sweep: &Sweep, front: &[usize]) -> Vec<String> {
-    let beaten = |(i, p): (usize, &Point)| {
-        // The most exact of those that take no longer: the last of them on the front.
-        let by = *front.iter().rev().find(|&&f| sweep.points[f].cost.seconds <= p.cost.seconds)?;
-        if front.contains(&i) {
-            return None;
-        }
-        let better = &sweep.points[by];
-        let (a, b) = (judged(&better.errors).value, judged(&p.errors).value);
+/// What another setting beats: no worse in time, in the largest error and in the RMSE, and better in one by more than times on one
+/// machine differ.
+fn dominated(sweep: &Sweep) -> Vec<String> {
+    let figures = |p: &Point| [p.cost.seconds, p.errors.max.value, p.errors.rmse.value];
+    let beats = |a: &Point, b: &Point| {
+        let pairs = || figures(a).into_iter().zip(figures(b));
+        pairs().all(|(a, b)| a <= b) && pairs().any(|(a, b)| a < b * (1.0 - SAME_TIME))
+    };
+    let mut order: Vec<&Point> = sweep.points.iter().collect();
+    order.sort_by(|a, b| a.cost.seconds.total_cmp(&b.cost.seconds));
+    let sentence = |p: &Point| {
+        let better = sweep.points.iter().filter(|q| beats(q, p));
+        let by = better.min_by(|a, b| a.errors.rmse.value.total_cmp(&b.errors.rmse.value))?;
         Some(format!(
-            "{} is dominated: {} takes {} its time and errs by {}/255 instead of {}/255",
+            "{} is dominated: {} takes {} its time and errs by {}/255 instead of {}/255 (RMSE {} instead of {})",
             p.setting.words(&sweep.base),
-            better.setting.words(&sweep.base),
-            share(better.cost.seconds / p.cost.seconds),
-            number(a),
-            number(b)
+            by.setting.words(&sweep.base),
+            share(by.cost.seconds / p.cost.seconds),
+            digits(by.errors.max.value),
+            digits(p.errors.max.value),
+            digits(by.errors.rmse.value),
+            digits(p.errors.rmse.value)
         ))
     };
-    sweep.points.iter().enumerate().filter_map(beaten).collect()
+    order.into_iter().filter_map(sentence).collect()
 }
 
 /// What must hold and doesn't.
