@@ -283,6 +283,9 @@ pub struct VerifyArgs {
     /// As many cases as the stated bounds speak of: minutes instead of seconds.
     #[arg(long)]
     pub extremes: bool,
+    /// Only whether pictures keep the errors that are stated of them, with many cases: closed forms, and the pictures of FILE.
+    #[arg(long, conflicts_with_all = ["extremes", "only"])]
+    pub coverage: bool,
     /// Make this check alone, and others so named.
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,

@@ -5,6 +5,7 @@
 //! [`Size::Long`].
 
 mod contact;
+mod coverage;
 mod draw;
 mod enclosure;
 mod energy;

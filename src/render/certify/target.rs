@@ -3,6 +3,10 @@
 use super::super::bounds::larger;
 use crate::scene::color::{decode_srgb, encode_srgb};
 
+/// What rounding may add to an error, in codes: the curve's two formulas, by which this is judged and that is written, meet to 1e-7
+/// of white only.
+const CURVE: f64 = 5e-5;
+
 /// What is asked of every pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
@@ -18,12 +22,22 @@ pub struct Target {
     pub samples: u32,
     /// Whether regions are looked at. Without them pixels are [`Estimated`](Status::Estimated) at best.
     pub certificates: bool,
+    /// The share of each interval's width that is believed: 1, but for the negative control that shows that less is found out.
+    pub believed: f64,
 }
 
 impl Target {
     /// An error of so many codes in a file of 8 bits, with confidence 0.999 and room enough for what the examples need.
     pub fn new(codes: f64) -> Target {
-        Target { codes, quantum: 1.0, confidence: 0.999, evaluations: 256, samples: 1 << 17, certificates: true }
+        Target {
+            codes,
+            quantum: 1.0,
+            confidence: 0.999,
+            evaluations: 256,
+            samples: 1 << 17,
+            certificates: true,
+            believed: 1.0,
+        }
     }
 
     /// What is left of the error when the rounding of written codes is taken out.
@@ -33,9 +47,10 @@ impl Target {
 
     /// The largest distance, in codes, between the code written for `value` and any value from `lo` to `hi`.
     pub(super) fn error(&self, value: f64, [lo, hi]: [f64; 2]) -> f64 {
-        let code = code(value);
+        let code = code(value as f32 as f64); // as the film holds it
         let written = if self.quantum > 0.0 { (code / self.quantum).round() * self.quantum } else { code };
-        larger(self::code(hi) - written, written - self::code(lo))
+        let [lo, hi] = [lo, hi].map(|end| value + self.believed * (end - value));
+        larger(self::code(hi) - written, written - self::code(lo)) + CURVE
     }
 }
 
@@ -134,9 +149,9 @@ mod tests {
     #[test]
     fn errors_are_those_of_written_codes() {
         let target = Target::new(2.0);
-        assert!((target.error(0.5, [0.5, 0.5]) - (code(0.5) - code(0.5).round()).abs()).abs() < 1e-12);
+        assert!((target.error(0.5, [0.5, 0.5]) - (code(0.5) - code(0.5).round()).abs()).abs() <= CURVE);
         let exact = Target { quantum: 0.0, ..target };
-        assert_eq!(exact.error(0.5, [0.5, 0.5]), 0.0);
+        assert!(exact.error(0.5, [0.5, 0.5]) <= CURVE);
         let (value, half) = middle([0.1, 0.2]);
         assert!(code(value) - code(0.1) - (code(0.2) - code(value)) < 1e-9 && half > 0.05);
     }
