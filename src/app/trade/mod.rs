@@ -20,7 +20,7 @@ pub mod sweep;
 pub mod table;
 pub mod verdict;
 
-use super::args::{TradeArgs, TradeAxis};
+use super::args::{Quality, TradeArgs, TradeAxis};
 use super::load::{load, request, shown_name};
 use super::picture::{fits, look};
 use super::progress::Steps;
@@ -86,7 +86,8 @@ pub fn run(args: &TradeArgs) -> Result<Exit, Stop> {
         });
     };
 
-    let asked = args.suggest.map(|share| 255.0 * share);
+    let named = || [Quality::Draft, Quality::Good, Quality::Fine].map(Quality::max_error).to_vec();
+    let wanted = args.suggest.map_or_else(named, |share| vec![share]);
     let verdict = Verdict::of(&swept);
     let report = Report {
         schema: 1,
@@ -104,8 +105,8 @@ pub fn run(args: &TradeArgs) -> Result<Exit, Stop> {
         axes: swept.rows.clone(),
         verdict,
         left_out: swept.left_out.clone(),
-        asked,
-        suggestion: asked.and_then(|codes| suggestion(&swept.points, codes)),
+        suggestions: wanted.into_iter().map(|share| suggestion(&swept.points, 255.0 * share)).collect(),
+        asked: args.suggest.is_some(),
     };
     let json = serde_json::to_string_pretty(&report).map_err(io::Error::from)? + "\n";
     write(&files, &swept, &report, &json)?;
@@ -116,7 +117,7 @@ pub fn run(args: &TradeArgs) -> Result<Exit, Stop> {
         anstream::stdout().write_all(text.as_bytes())?;
         writeln!(io::stdout(), "{}", folder.join(FILES[3]).display())?;
     }
-    if !args.json && (!args.quiet || asked.is_some()) {
+    if !args.json && (!args.quiet || report.asked) {
         io::stdout().write_all(table::recommendation(&report).as_bytes())?;
     }
     match (report.interrupted, report.is_met()) {

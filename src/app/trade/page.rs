@@ -4,7 +4,7 @@ use super::image::{GAIN, difference, link};
 use super::report::Report;
 use super::setting::number;
 use super::sweep::Sweep;
-use super::table::{HEADS, cells, heading, recommendation};
+use super::table::{HEADS, cells, conclusions, heading, recommendation};
 use minijinja::Environment;
 use serde::Serialize;
 use std::io;
@@ -16,13 +16,12 @@ struct Page<'p> {
     scene: &'p str,
     /// A few lines: what was measured, where, against what.
     heading: Vec<String>,
-    recommendation: String,
+    recommendation: Vec<String>,
     /// The plot; well-formed.
     plot: &'p str,
     heads: [&'static str; 13],
     rows: Vec<Line>,
-    slopes: Vec<String>,
-    remarks: &'p [String],
+    conclusions: Vec<String>,
     violations: &'p [String],
     left_out: Vec<String>,
     pictures: Vec<Shown>,
@@ -63,7 +62,7 @@ pub fn page(sweep: &Sweep, report: &Report, plot: &str) -> io::Result<String> {
         (verdict.front.first().copied(), "the fastest"),
         (verdict.knee, "the knee"),
         (verdict.front.last().copied(), "the most exact"),
-        (report.suggestion.map(|s| s.point), "what is suggested"),
+        (report.suggestions.iter().filter(|_| report.asked).find_map(|s| s.point), "what is suggested"),
         (Some(0), "the scene's own"),
     ];
     for (point, why) in all {
@@ -95,16 +94,11 @@ pub fn page(sweep: &Sweep, report: &Report, plot: &str) -> io::Result<String> {
     let page = Page {
         scene: report.scene.rsplit(['/', '\\']).next().unwrap_or_default(),
         heading: heading(report).lines().map(String::from).collect(),
-        recommendation: recommendation(report),
+        recommendation: recommendation(report).lines().map(String::from).collect(),
         plot,
         heads: HEADS,
         rows: order.into_iter().map(line).collect(),
-        slopes: verdict
-            .slopes
-            .iter()
-            .map(|s| format!("{}: RMSE ~ time^{:.2}, largest error ~ time^{:.2}", s.axis.word(), s.rmse, s.max))
-            .collect(),
-        remarks: &verdict.remarks,
+        conclusions: conclusions(report),
         violations: &verdict.violations,
         left_out: report.left_out.iter().map(|l| format!("{}: {}", l.setting, l.why)).collect(),
         pictures: chosen.into_iter().map(shown).collect::<io::Result<_>>()?,

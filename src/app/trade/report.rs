@@ -45,10 +45,10 @@ pub struct Report {
     pub verdict: Verdict,
     /// What wasn't measured.
     pub left_out: Vec<LeftOut>,
-    /// The error that a setting was wanted for, in codes; `null` where none was.
-    pub asked: Option<f64>,
-    /// The cheapest setting that keeps it; `null` where none does.
-    pub suggestion: Option<Suggestion>,
+    /// What to choose: for the error that was asked for, or for each that has a name.
+    pub suggestions: Vec<Suggestion>,
+    /// Whether an error was asked for.
+    pub asked: bool,
 }
 
 /// What all pictures were measured against.
@@ -205,7 +205,8 @@ impl Report {
 
     /// Whether all that must hold holds, and a setting that was asked for was found.
     pub fn is_met(&self) -> bool {
-        self.verdict.violations.is_empty() && (self.asked.is_none() || self.suggestion.is_some())
+        let is_found = self.suggestions.iter().all(|s| s.point.is_some());
+        self.verdict.violations.is_empty() && (!self.asked || is_found)
     }
 }
 

@@ -6,12 +6,15 @@ use super::point::{Broken, Point};
 use super::reference::Reference;
 use super::setting::{Axis, Setting, Way, number};
 use crate::film::metric::{Errors, change, written};
+use crate::scene::Accuracy;
 use serde::Serialize;
 
 /// What was measured.
 pub struct Sweep {
     /// The scene's own setting, the first of the points.
     pub base: Setting,
+    /// The probability with which bounded pixels are to keep their error.
+    pub confidence: f64,
     /// What all were measured against.
     pub reference: Reference,
     /// The settings that were measured.
@@ -70,7 +73,8 @@ pub fn sweep(maker: &Maker<'_>, base: Setting, axes: &[Axis], told: &dyn Told) -
     told.end();
 
     let own = first.pixels.clone();
-    let mut sweep = Sweep { base, reference, points: Vec::new(), rows: Vec::new(), left_out: Vec::new() };
+    let confidence = maker.options.accuracy.map_or(Accuracy::CONFIDENCE, |a| a.confidence);
+    let mut sweep = Sweep { base, confidence, reference, points: Vec::new(), rows: Vec::new(), left_out: Vec::new() };
     let base_point = sweep.add(base, first, &own);
     sweep.settle(maker, base_point);
     let longest = plans.iter().map(|(_, settings)| settings.len()).max().unwrap_or(0);
@@ -115,6 +119,11 @@ impl Sweep {
         if let Some(known) = self.points.iter().position(|p| p.setting == *setting) {
             return Some(known);
         }
+        if let Some(done) = self.done_before(setting) {
+            let why = format!("the picture is as good as it gets after {} s", number(done));
+            self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why });
+            return None;
+        }
         let left = maker.budget.left();
         let expected = self.expected(setting);
         let room = SHARE * left;
@@ -140,6 +149,16 @@ impl Sweep {
         };
         self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why });
         None
+    }
+
+    /// The time of a picture that didn't need all that it was given, where `setting` would give it more.
+    fn done_before(&self, setting: &Setting) -> Option<f64> {
+        let Way::Time(more) = setting.way else { return None };
+        self.points.iter().find_map(|p| match p.setting.way {
+            // What ends later than its time is told by the clock, not by the last error.
+            Way::Time(given) if given < more && p.cost.seconds < 0.9 * given => Some(p.cost.seconds),
+            _ => None,
+        })
     }
 
     /// Seconds that a setting will take, from those that were measured; `None` where nothing tells.

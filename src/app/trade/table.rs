@@ -2,6 +2,7 @@
 
 use super::report::{Report, Row};
 use super::setting::{digits, number};
+use super::verdict::{Slope, Suggestion};
 use crate::app::verify::report::Machine;
 use crate::app::words::{duration, thousands};
 use anstyle::{AnsiColor, Style};
@@ -95,17 +96,8 @@ pub fn body(report: &Report) -> String {
         };
     }
     text.push('\n');
-    for slope in &report.verdict.slopes {
-        let _ = writeln!(
-            text,
-            "{}: RMSE ~ time^{:.2}, largest error ~ time^{:.2}",
-            slope.axis.word(),
-            slope.rmse,
-            slope.max
-        );
-    }
-    for remark in &report.verdict.remarks {
-        let _ = writeln!(text, "{remark}");
+    for line in conclusions(report) {
+        let _ = writeln!(text, "{line}");
     }
     for out in &report.left_out {
         let _ = writeln!(text, "left out: {}: {}", out.setting, out.why);
@@ -117,44 +109,49 @@ pub fn body(report: &Report) -> String {
     text
 }
 
-/// The last line: what to choose.
+/// What follows from the figures, a sentence a line.
+pub fn conclusions(report: &Report) -> Vec<String> {
+    let slope = |s: &Slope| format!("{}: RMSE ~ time^{:.2}, largest error ~ time^{:.2}", s.axis.word(), s.rmse, s.max);
+    let slopes = report.verdict.slopes.iter().map(slope);
+    slopes.chain([bend(report)]).chain(report.verdict.remarks.iter().cloned()).filter(|line| !line.is_empty()).collect()
+}
+
+/// The last lines: what to choose.
 pub fn recommendation(report: &Report) -> String {
-    let named = |i: usize| {
-        let row = &report.points[i];
-        let asked = row.arguments.as_ref().map_or(String::new(), |a| format!(" ({a})"));
-        format!("{}{asked}, {}", row.setting, duration((row.cost.seconds * 1e6) as u64))
-    };
-    match (report.asked, &report.suggestion) {
-        (Some(asked), Some(s)) => format!(
+    let line = |s: &Suggestion| match s.point {
+        Some(point) => format!(
             "for {}/255: {}: at most {}/255, a margin of {}/255\n",
-            number(asked),
-            named(s.point),
+            number(s.asked),
+            named(&report.points[point]),
             number(s.at_most),
-            number(s.margin)
+            number(s.asked - s.at_most)
         ),
-        (Some(asked), None) => {
-            let best = report.points.iter().map(|p| p.max[2]).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
-            format!(
-                "for {}/255: none of these settings keeps it; the best is at most {}/255\n",
-                number(asked),
-                number(best)
-            )
+        None => format!(
+            "for {}/255: none of these settings surely keeps it; the best errs by {}/255 at most\n",
+            number(s.asked),
+            number(s.at_most)
+        ),
+    };
+    report.suggestions.iter().map(line).collect()
+}
+
+/// Where accuracy begins to get dearer.
+fn bend(report: &Report) -> String {
+    match (report.verdict.knee, report.verdict.front.as_slice()) {
+        (Some(knee), _) => {
+            let row = &report.points[knee];
+            format!("the knee: {}: errs by {}/255; beyond it time buys less", named(row), digits(row.max[0]))
         }
-        (None, _) => match report.verdict.knee {
-            Some(knee) => {
-                format!(
-                    "the knee: {}: errs by {}/255; what is dearer buys less for its time\n",
-                    named(knee),
-                    number(report.points[knee].max[0])
-                )
-            }
-            None => match (report.verdict.front.first(), report.verdict.front.last()) {
-                (Some(&fast), Some(&exact)) if fast != exact => {
-                    format!("no knee: from {} to {} accuracy has one price\n", named(fast), named(exact))
-                }
-                (Some(&only), _) => format!("the only one worth its time: {}\n", named(only)),
-                _ => String::new(),
-            },
-        },
+        (None, [fast, .., exact]) => {
+            let [fast, exact] = [*fast, *exact].map(|i| &report.points[i]);
+            format!("no knee: from {} to {} the front doesn't bend towards less", named(fast), named(exact))
+        }
+        (None, _) => String::new(),
     }
+}
+
+/// A setting, how to ask for it, and its time.
+fn named(row: &Row) -> String {
+    let asked = row.arguments.as_ref().map_or(String::new(), |a| format!(" ({a})"));
+    format!("{}{asked}, {}", row.setting, duration((row.cost.seconds * 1e6) as u64))
 }

@@ -5,7 +5,7 @@ use super::point::Point;
 use super::setting::{Axis, Way, digits, number};
 use super::sweep::Sweep;
 use crate::film::metric::{Errors, Range};
-use crate::math::fun;
+use crate::verify::lower_limit;
 use serde::Serialize;
 
 /// The error by which settings are judged against each other: the largest of any pixel, which is what can be asked for.
@@ -41,27 +41,23 @@ pub struct Slope {
     pub max: f64,
 }
 
-/// The cheapest setting that keeps an error.
+/// What to choose for an error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Suggestion {
     /// The error that is to be kept, in codes.
     pub asked: f64,
-    /// The number of the point.
-    pub point: usize,
-    /// Its largest error, the truth's uncertainty added.
+    /// The number of the cheapest point that keeps it; `None` where none does.
+    pub point: Option<usize>,
+    /// Its largest error; of the most exact point where none keeps the error.
     pub at_most: f64,
-    /// What is left of the error that was asked for.
-    pub margin: f64,
 }
 
 /// Changes below this many codes are seen by no one: a fifth of what rounding to a code does.
 const INVISIBLE: f64 = 0.1;
 /// Times nearer than this aren't told apart: runs on one machine differ by as much.
 const SAME_TIME: f64 = 0.03;
-/// How improbable it must be that more bounded pixels than allowed break their bound by chance, before it isn't put down to it.
+/// How improbable it must be that so many bounded pixels break their bound by chance, before it isn't put down to it.
 const CHANCE: f64 = 1e-3;
-/// The confidence that bounded pixels are asked for.
-const CONFIDENCE: f64 = 0.999;
 
 impl Verdict {
     /// Of a sweep.
@@ -100,12 +96,16 @@ fn at_most(p: &Point) -> f64 {
 }
 
 /// The cheapest point whose largest error is surely `asked` codes at most.
-pub fn suggestion(points: &[Point], asked: f64) -> Option<Suggestion> {
+pub fn suggestion(points: &[Point], asked: f64) -> Suggestion {
     let keeps = |(_, p): &(usize, &Point)| at_most(p) <= asked;
     let cheapest = |a: &(usize, &Point), b: &(usize, &Point)| a.1.cost.seconds.total_cmp(&b.1.cost.seconds);
-    let (point, found) = points.iter().enumerate().filter(keeps).min_by(cheapest)?;
-    let at_most = at_most(found);
-    Some(Suggestion { asked, point, at_most, margin: asked - at_most })
+    match points.iter().enumerate().filter(keeps).min_by(cheapest) {
+        Some((point, found)) => Suggestion { asked, point: Some(point), at_most: at_most(found) },
+        None => {
+            let least = points.iter().map(at_most).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+            Suggestion { asked, point: None, at_most: least }
+        }
+    }
 }
 
 /// What turning depth, precision and certificates does.
@@ -206,10 +206,10 @@ fn violations(sweep: &Sweep) -> Vec<String> {
         if p.broken.proved > 0 {
             out.push(format!("{name}: {} pixels that were proved are further off than proved", p.broken.proved));
         }
-        if chance(p.broken.bounded, claim.bounded as f64 * (1.0 - CONFIDENCE)) < CHANCE {
+        if lower_limit(p.broken.bounded as u64, claim.bounded as u64, CHANCE) > 1.0 - sweep.confidence {
             out.push(format!(
-                "{name}: {} of {} bounded pixels are further off than said, one in a thousand may be",
-                p.broken.bounded, claim.bounded
+                "{name}: {} of {} bounded pixels are further off than said, too many for a confidence of {}",
+                p.broken.bounded, claim.bounded, sweep.confidence
             ));
         }
         // Where nothing else is said, what is said of the whole picture must hold as it stands.
@@ -239,17 +239,6 @@ fn violations(sweep: &Sweep) -> Vec<String> {
     out
 }
 
-/// The probability of `n` events or more where `mean` are expected: Poisson's, which is the binomial's for rare events.
-fn chance(n: usize, mean: f64) -> f64 {
-    let mut fewer = 0.0;
-    let mut term = fun::exp(-mean);
-    for k in 0..n {
-        fewer += term;
-        term *= mean / (k + 1) as f64;
-    }
-    1.0 - fewer
-}
-
 /// `costs 31 %`, or that it costs nothing that could be told.
 fn costs(dearer: f64, cheaper: f64) -> String {
     let more = dearer / cheaper - 1.0;
@@ -273,13 +262,6 @@ fn above(change: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn chances_are_poissons() {
-        assert_eq!(chance(0, 3.0), 1.0);
-        assert!((chance(1, 0.5) - (1.0 - (-0.5f64).exp())).abs() < 1e-15);
-        assert!(chance(1, 1e-6) < CHANCE && chance(1, 0.05) > CHANCE && chance(40, 3.0) < 1e-12);
-    }
 
     #[test]
     fn words_for_times() {
