@@ -7,7 +7,7 @@ use crate::app::stats::Rays;
 use crate::render::certify::{Control, Pixel, Summary, Target, refine};
 use crate::render::{self, Options, Silent, World};
 use serde::Serialize;
-use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
+use std::sync::atomic::AtomicBool;
 
 /// Makes pictures of one world.
 pub struct Maker<'m> {
@@ -89,8 +89,8 @@ impl Maker<'_> {
         let clock = Clock::start();
         let target = Target { certificates: false, ..Target::new(codes) };
         let mut certified = vec![Pixel::unknown(); options.width as usize * options.height as usize];
-        let climb = |cancel: &AtomicBool| climb(self.world, options, &[target], &mut certified, cancel);
-        if !self.budget.within(seconds, climb) {
+        let work = |cancel: &AtomicBool| reach(self.world, options, &target, &mut certified, cancel);
+        if !self.budget.within(seconds, work) {
             return None;
         }
         let cost = once(&clock);
@@ -101,11 +101,9 @@ impl Maker<'_> {
     }
 }
 
-/// Brings `pixels` to one target after another; whether it got through.
-pub fn climb(world: &World, options: &Options, targets: &[Target], pixels: &mut [Pixel], cancel: &AtomicBool) -> bool {
-    targets.iter().all(|target| {
-        !cancel.load(SeqCst) && refine(world, options, target, pixels, Control { progress: &Silent, cancel })
-    })
+/// Brings `pixels` to a target; whether it got through.
+pub fn reach(world: &World, options: &Options, target: &Target, pixels: &mut [Pixel], cancel: &AtomicBool) -> bool {
+    refine(world, options, target, pixels, Control { progress: &Silent, cancel })
 }
 
 impl Claim {

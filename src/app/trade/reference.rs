@@ -1,6 +1,7 @@
 //! The picture that all others are measured against: as near to the truth as the budget allows, with its own uncertainty.
 
-use super::maker::{Made, Maker, climb};
+use super::clock::Clock;
+use super::maker::{Made, Maker, reach};
 use super::plan::{REFERENCE_FACTOR, smallest_error};
 use super::setting::{Setting, Way};
 use crate::film::metric::{Flip, Truth};
@@ -18,6 +19,27 @@ pub struct Reference {
     pub kind: Kind,
     /// Seconds that it took.
     pub seconds: f64,
+    /// What was learnt of the price of certificates.
+    pub climb: Climb,
+}
+
+/// How far certificates came, and when: each error in codes with the seconds until it was reached, from the largest on; and the
+/// seconds until the end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Climb {
+    /// Errors and seconds.
+    pub reached: Vec<(f64, f64)>,
+    /// Seconds until it was over.
+    pub seconds: f64,
+}
+
+impl Climb {
+    /// Seconds that an error of so many codes will take: those until it or a smaller one was reached; twice all there were, where
+    /// none was.
+    pub fn expected(&self, codes: f64) -> f64 {
+        let reached = self.reached.iter().find(|(error, _)| *error <= codes);
+        reached.map_or(2.0 * self.seconds, |(_, seconds)| *seconds)
+    }
 }
 
 /// How a reference was made.
@@ -26,7 +48,7 @@ pub struct Reference {
 pub enum Kind {
     /// Certified: each pixel's uncertainty is what is proved, bounded or estimated of it.
     Certified {
-        /// The error that was asked for, in codes.
+        /// The smallest error that all its pixels were brought to, as far as they could be, in codes.
         asked: f64,
         /// Pixels that keep what is said of them for certain.
         proved: usize,
@@ -67,7 +89,7 @@ impl Reference {
             return Some(certified);
         }
         Some(match grid(maker, base, base_seconds) {
-            Some(grid) if grid.truth.worst() < certified.truth.worst() => grid,
+            Some(grid) if grid.truth.worst() < certified.truth.worst() => Reference { climb: certified.climb, ..grid },
             _ => certified,
         })
     }
@@ -95,23 +117,27 @@ impl Reference {
 
 fn certified(maker: &Maker<'_>, base: &Setting) -> Reference {
     let options = Setting { precision: Precision::F64, ..*base }.options(maker.options);
-    let mut asked = smallest_error() / REFERENCE_FACTOR;
-    // Its codes aren't rounded: it is no file.
-    let target = |codes: f64| Target { quantum: 0.0, ..Target::new(codes) };
-    let targets: Vec<Target> = RUNGS.into_iter().chain([asked]).map(target).collect();
+    let asked = smallest_error() / REFERENCE_FACTOR;
     let mut pixels = vec![Pixel::unknown(); options.width as usize * options.height as usize];
-    let before = maker.budget.left();
-    maker.budget.within(CERTIFIED_SHARE * before, |cancel| {
-        if climb(maker.world, &options, &targets, &mut pixels, cancel)
-            && climb(maker.world, &options, &[target(asked / BEYOND)], &mut pixels, cancel)
-        {
-            asked /= BEYOND;
+    let mut climb = Climb::default();
+    let clock = Clock::start();
+    maker.budget.within(CERTIFIED_SHARE * maker.budget.left(), |cancel| {
+        for codes in RUNGS.into_iter().chain([asked, asked / BEYOND]) {
+            // Its codes aren't rounded: it is no file.
+            let target = Target { quantum: 0.0, ..Target::new(codes) };
+            if !reach(maker.world, &options, &target, &mut pixels, cancel) {
+                break;
+            }
+            climb.reached.push((codes, clock.read().0));
         }
     });
+    climb.seconds = clock.read().0;
+    // What was asked of it last, and reached.
+    let asked = climb.reached.last().map_or(RUNGS[0], |(codes, _)| *codes);
     let Summary { proved, bounded, estimated, open, .. } = Summary::of(&pixels, f64::INFINITY);
     let kind = Kind::Certified { asked, proved, bounded, estimated, open };
     let known = pixels.iter().map(|p| (p.value, p.codes));
-    finish(Truth::new(options.width, options.height, known), kind, before - maker.budget.left())
+    finish(Truth::new(options.width, options.height, known), kind, climb)
 }
 
 /// The largest grid that fits and has one half as fine beside it.
@@ -139,10 +165,22 @@ fn grid(maker: &Maker<'_>, base: &Setting, base_seconds: f64) -> Option<Referenc
         (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, |most, d| if d > most { d } else { most })
     };
     let uncertainty = coarse.codes.iter().zip(&fine.codes).map(distance).collect();
-    Some(finish(Truth { uncertainty, ..fine }, Kind::Grid { side }, before - maker.budget.left()))
+    let made = finish(Truth { uncertainty, ..fine }, Kind::Grid { side }, Climb::default());
+    Some(Reference { seconds: before - maker.budget.left(), ..made })
 }
 
-fn finish(truth: Truth, kind: Kind, seconds: f64) -> Reference {
+fn finish(truth: Truth, kind: Kind, climb: Climb) -> Reference {
     let seen = Flip::new(&truth.written(), truth.width);
-    Reference { truth, seen, kind, seconds }
+    Reference { truth, seen, kind, seconds: climb.seconds, climb }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_certificates_will_take() {
+        let climb = Climb { reached: vec![(16.0, 1.0), (4.0, 3.0)], seconds: 10.0 };
+        assert_eq!([16.0, 8.0, 4.0, 2.0].map(|codes| climb.expected(codes)), [1.0, 3.0, 3.0, 20.0]);
+    }
 }

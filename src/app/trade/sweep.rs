@@ -34,6 +34,8 @@ pub struct LeftOut {
     pub setting: String,
     /// Why.
     pub why: String,
+    /// Whether it was begun.
+    pub unfinished: bool,
 }
 
 /// Told of what is measured.
@@ -52,7 +54,7 @@ const MOST_RUNS: u32 = 5;
 /// dials are to follow.
 const SHARE: f64 = 0.5;
 /// The share of what is left that a setting may take of which nothing is expected.
-const UNKNOWN_SHARE: f64 = 0.25;
+const UNKNOWN_SHARE: f64 = 0.15;
 /// A picture that takes less than this share of what is left is made several times at once.
 const NOTHING: f64 = 0.001;
 /// All are made again if that is expected to take this share of what is left.
@@ -121,20 +123,24 @@ impl Sweep {
         }
         if let Some(done) = self.done_before(setting) {
             let why = format!("the picture is as good as it gets after {} s", number(done));
-            self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why });
+            self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why, unfinished: false });
             return None;
         }
         let left = maker.budget.left();
         let expected = self.expected(setting);
         let room = SHARE * left;
-        let why = match expected {
-            Some(seconds) if seconds > room => {
+        let cheaper = self.left_out.iter().find(|l| l.axis == axis && l.unfinished);
+        let why = match (expected, cheaper) {
+            _ if left <= 0.0 => Some("the budget is spent".into()),
+            (_, Some(l)) => Some(format!("{} wasn't finished", l.setting)),
+            (Some(seconds), _) if seconds > room => {
                 Some(format!("expected to take {} s, and {} s are left", number(seconds), number(left)))
             }
-            _ if left <= 0.0 => Some("the budget is spent".into()),
             _ => None,
         };
-        let limit = if expected.is_some() { f64::INFINITY } else { UNKNOWN_SHARE * left };
+        // What takes far longer than expected mustn't eat up the rest.
+        let limit = if expected.is_some() { room } else { UNKNOWN_SHARE * left };
+        let unfinished = why.is_none();
         let why = match why {
             Some(why) => why,
             None => match maker.make(setting, limit) {
@@ -147,7 +153,7 @@ impl Sweep {
                 None => format!("not finished in {} s", number(left - maker.budget.left())),
             },
         };
-        self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why });
+        self.left_out.push(LeftOut { axis, setting: setting.words(&self.base), why, unfinished });
         None
     }
 
@@ -176,16 +182,16 @@ impl Sweep {
                 // Nothing cheaper than this is swept.
                 measured.or(Some(ROOM * seconds(&self.points[0]) * (n * n) as f64))
             }
-            Way::Error(_) => {
+            Way::Error(codes) => {
+                let known = self.reference.climb.expected(codes);
                 let mut measured = self.points.iter().rev().filter(|p| matches!(p.setting.way, Way::Error(_)));
                 match (measured.next(), measured.next()) {
                     (Some(last), Some(before)) => {
                         let growth = seconds(last) / seconds(before);
-                        Some(seconds(last) * if growth > 1.0 { growth } else { 1.0 })
+                        let on = seconds(last) * if growth > 1.0 { growth } else { 1.0 };
+                        Some(if on < known { on } else { known })
                     }
-                    (Some(last), None) => Some(2.0 * seconds(last)),
-                    // It went through larger errors itself.
-                    _ => Some(0.5 * self.reference.seconds),
+                    _ => Some(known),
                 }
             }
             Way::Time(seconds) => Some(seconds),
