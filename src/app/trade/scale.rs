@@ -61,7 +61,7 @@ mod tests {
         assert_eq!((scale.at(0.0), scale.at(1e9)), (0.0, 100.0));
         let ticks = scale.ticks(5.0);
         assert!(ticks.len() == 7 && (ticks[0] - 0.1).abs() < 1e-12, "{ticks:?}");
-        assert_eq!((scale.ticks(20.0).len(), scale.ticks(30.0).len()), (5, 3));
+        assert_eq!((scale.ticks(15.0).len(), scale.ticks(30.0).len()), (5, 3));
     }
 
     #[test]
