@@ -41,6 +41,8 @@ pub enum Command {
     Explain(ExplainArgs),
     /// Try out on this machine what rtdsl says of its accuracy.
     Verify(VerifyArgs),
+    /// Measure what accuracy costs: error against time for this scene on this machine.
+    Trade(TradeArgs),
     /// List the parameters that `--set` can change.
     Params(ParamsArgs),
     /// Explain a word of the scene language.
@@ -296,6 +298,55 @@ pub struct VerifyArgs {
     /// Print the figures as a table in Markdown.
     #[arg(long, conflicts_with = "json")]
     pub markdown: bool,
+}
+
+/// `rtdsl trade`.
+#[derive(Debug, Args)]
+pub struct TradeArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Folder for trade.csv, trade.json, trade.svg and index.html. [default: FILE's name with `-trade`, in the current folder]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Turn only this dial, and others so named. [default: all]
+    #[arg(long, value_enum, value_name = "DIAL", value_delimiter = ',')]
+    pub axis: Vec<TradeAxis>,
+    /// Time for all of it: what wouldn't fit is left out.
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = seconds)]
+    pub budget: f64,
+    /// Say which setting is the cheapest that keeps this error, as in `2/255`; ends with 4 where none does.
+    #[arg(long, value_name = "E", value_parser = max_error)]
+    pub suggest: Option<f64>,
+    /// The setting around which dials are turned.
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Worker threads. [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// Print trade.json on standard output; docs/trade.md tells of the fields.
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing but errors, and what `--suggest` asks for.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// `--axis`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TradeAxis {
+    /// The largest error that is asked for.
+    Error,
+    /// Rays a pixel.
+    Samples,
+    /// The time that tracing may take.
+    Time,
+    /// Reflections and transmissions one after another.
+    Depth,
+    /// 64 bits or 32.
+    Precision,
+    /// Bounds of regions, or samples alone.
+    Certificates,
 }
 
 /// `rtdsl params`.

@@ -20,6 +20,7 @@ pub mod render;
 pub mod sight;
 pub mod stats;
 pub mod stop;
+pub mod trade;
 pub mod verify;
 pub mod view;
 pub mod watch;
@@ -50,6 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(a) => check::run(a),
         Command::Explain(a) => explain::run(a),
         Command::Verify(a) => verify::run(a),
+        Command::Trade(a) => trade::run(a),
         Command::Params(a) => params::run(a),
         Command::Help(a) => help::run(a),
         Command::Completions(a) => completions::run(a),

@@ -25,6 +25,7 @@ pub mod torus;
 mod tree;
 mod watertight;
 
+pub use coverage::lower_limit;
 pub use histogram::Histogram;
 pub use outcome::{Bound, Figure, Outcome};
 pub use picture_check::{PictureCheck, Subject, hashed};

@@ -10,7 +10,7 @@ pub(super) fn upper_limit(failures: u64, n: u64, alpha: f64) -> f64 {
 
 /// The largest probability of failing with which as many as `failures` of `n` would come about with probability `alpha` only: the
 /// true one is above, with confidence 1 − `alpha`. 0 where none failed.
-pub(super) fn lower_limit(failures: u64, n: u64, alpha: f64) -> f64 {
+pub fn lower_limit(failures: u64, n: u64, alpha: f64) -> f64 {
     if failures == 0 {
         return 0.0;
     }

@@ -11,5 +11,6 @@ mod covered;
 mod kept;
 mod scenes;
 
+pub use binomial::lower_limit;
 pub use closed_form::CHECK;
 pub use scenes::CHECK as PICTURES;
