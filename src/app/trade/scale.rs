@@ -16,7 +16,7 @@ pub struct Scale {
 impl Scale {
     /// Wide enough for all values, which are positive; a little more, so that no mark lies on an edge.
     pub fn over(values: impl Iterator<Item = f64>, [start, end]: [f64; 2]) -> Scale {
-        let logs = values.filter(|v| *v > 0.0 && v.is_finite()).map(|v| fun::log10(v));
+        let logs = values.filter(|v| *v > 0.0 && v.is_finite()).map(fun::log10);
         let ends = logs.fold(None, |ends: Option<[f64; 2]>, x| {
             let [a, b] = ends.unwrap_or([x, x]);
             Some([if x < a { x } else { a }, if x > b { x } else { b }])

@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn weights_of_each_sign_sum_to_one() {
-        let weights = normalized(5, |x| x * (-x * x / 8.0).exp());
+        let weights = normalized(5, |x| x * fun::exp(-x * x / 8.0));
         assert!((weights[6..].iter().sum::<f64>() - 1.0).abs() < 1e-15 && weights[5] == 0.0);
         assert!((weights[..5].iter().sum::<f64>() + 1.0).abs() < 1e-15 && weights[0] < 0.0);
     }
