@@ -45,10 +45,10 @@ impl Budget {
     pub fn within<T>(&self, seconds: f64, work: impl FnOnce(&AtomicBool) -> T) -> T {
         let left = self.left();
         let seconds = if seconds < left { seconds } else { left };
-        let _alarm = Alarm::set(seconds, Arc::clone(&self.cancel));
+        let alarm = Alarm::set(seconds, Arc::clone(&self.cancel));
         let done = work(&self.cancel);
         // The alarm is over; what the user wants isn't.
-        drop(_alarm);
+        drop(alarm);
         self.cancel.store(false, SeqCst);
         if self.is_interrupted() {
             self.cancel.store(true, SeqCst);
