@@ -9,7 +9,7 @@ use super::bounds::{Bounds, larger, smaller};
 use super::shape::Visit;
 use super::slabs::Slabs;
 use crate::math::real::splat3;
-use crate::math::{Affine, Real};
+use crate::math::{Affine, Mask, Real};
 
 /// Extents whose largest is this many times the smallest, or more, are extreme. Well within what the kernels are right for, so that none
 /// whose error could matter is left out, and beyond what most shapes are, which pay nothing.
@@ -69,6 +69,13 @@ impl<R: Real, V: Visit<R>> Visit<R> for Confined<'_, R, V> {
             None => self.visit.crossing(t, part, valid),
             // Not left out where it is before or after its stay: a hole would be worse than a rounding error.
             Some((enter, leave)) => self.visit.crossing(t.max(enter).min(leave), part, valid & enter.le(leave)),
+        }
+    }
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        match self.stay {
+            None => self.visit.needs_further(t, valid),
+            Some(_) => R::Mask::splat(true), // what is shown is another t
         }
     }
 }
