@@ -9,7 +9,7 @@ use super::bounds::{Bounds, larger, smaller};
 use super::shape::Visit;
 use super::slabs::Slabs;
 use crate::math::real::splat3;
-use crate::math::{Affine, Mask, Real};
+use crate::math::{Affine, Real};
 
 /// Extents whose largest is this many times the smallest, or more, are extreme. Well within what the kernels are right for, so that none
 /// whose error could matter is left out, and beyond what most shapes are, which pay nothing.
@@ -43,28 +43,31 @@ fn is_thin(m: [[f64; 3]; 3], size: f64) -> bool {
     !(largest(minors.map(largest)) < EXTREME * determinant.abs())
 }
 
-/// Shows only crossings within a box.
-pub struct Confined<'v, R, V> {
+/// Shows only crossings of some rays, and only within a box.
+pub struct Confined<'v, R: Real, V> {
     visit: &'v mut V,
+    /// The rays. What a kernel makes of others doesn't count: whether it is asked depends on the rays beside them.
+    met: R::Mask,
     /// From which t to which; the first above the second where the box is missed. `None` where nothing is confined.
     stay: Option<(R, R)>,
 }
 
 impl<'v, R: Real, V: Visit<R>> Confined<'v, R, V> {
-    /// Crossings of rays from `o` along `d`, within `bounds`, if there are any.
+    /// Crossings of the rays of `met`, from `o` along `d`, within `bounds`, if there are any.
     #[inline(always)]
-    pub fn new(bounds: Option<&Bounds>, (o, d): ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
+    pub fn new(met: R::Mask, bounds: Option<&Bounds>, (o, d): ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
         let stay = bounds.map(
             #[inline(always)]
             |b| Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)]),
         );
-        Confined { visit, stay }
+        Confined { visit, met, stay }
     }
 }
 
 impl<R: Real, V: Visit<R>> Visit<R> for Confined<'_, R, V> {
     #[inline(always)]
     fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
+        let valid = valid & self.met;
         match self.stay {
             None => self.visit.crossing(t, part, valid),
             // Not left out where it is before or after its stay: a hole would be worse than a rounding error.
@@ -74,8 +77,8 @@ impl<R: Real, V: Visit<R>> Visit<R> for Confined<'_, R, V> {
     #[inline(always)]
     fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
         match self.stay {
-            None => self.visit.needs_further(t, valid),
-            Some(_) => R::Mask::splat(true), // what is shown is another t
+            None => self.visit.needs_further(t, valid & self.met),
+            Some(_) => self.met, // what is shown is another t
         }
     }
 }
@@ -104,7 +107,7 @@ mod tests {
         let seen = |d: [f64; 3], t: f64| {
             let mut seen = Vec::new();
             let mut visit = |t: f64, _: f64, valid: Bool| seen.push((t, valid.0));
-            Confined::new(Some(&bounds), ([0.0; 3], d), &mut visit).crossing(t, 0.0, Bool(true));
+            Confined::new(Bool(true), Some(&bounds), ([0.0; 3], d), &mut visit).crossing(t, 0.0, Bool(true));
             seen[0]
         };
         assert_eq!(seen([0.0, 0.0, 1.0], 5.0), (5.0, true));
