@@ -359,6 +359,11 @@ struct Blocked<R: Real> {
 
 impl<R: Real> Visit<R> for Blocked<R> {
     #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        valid & !R::zero().lt(t)
+    }
+
+    #[inline(always)]
     fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
         self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));
     }
