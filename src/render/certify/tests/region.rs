@@ -1,0 +1,147 @@
+//! Regions: what certificates say of them, and points in them.
+
+use super::super::super::dispatch::sampler;
+use super::super::bound::Bound;
+use super::super::{Certifier, Status, Target, certify};
+use super::*;
+use crate::math::Form;
+use crate::math::hash::KeyedHash;
+use crate::render::bounds::smaller;
+use crate::render::{Options, World};
+
+/// How certificates are weakened to show that tests notice.
+#[derive(Clone, Copy, PartialEq)]
+enum Weakened {
+    /// Not at all.
+    No,
+    /// What the form may miss.
+    Form,
+    /// The values' range.
+    Range,
+    /// The integral.
+    Sum,
+}
+
+fn weaken(b: Bound, how: Weakened) -> Bound {
+    let narrow = |[lo, hi]: [f64; 2], by: f64| {
+        let (m, h) = (0.5 * (lo + hi), 0.5 * (hi - lo) * by);
+        [m - h, m + h]
+    };
+    match how {
+        Weakened::No => b,
+        Weakened::Form => Bound { form: b.form.map(|f| f.map(|f| Form { r: 0.3 * f.r, ..f })), ..b },
+        Weakened::Range => Bound { range: b.range.map(|r| narrow(r, 0.8)), ..b },
+        Weakened::Sum => Bound { sum: b.sum.map(|s| narrow(s, 0.2)), ..b },
+    }
+}
+
+/// What was found in random regions.
+#[derive(Debug, Default)]
+struct Found {
+    regions: u64,
+    /// With a form.
+    formed: u64,
+    points: u64,
+    /// Points outside of form or range.
+    outside: u64,
+    /// Means outside of the integral's bounds, by more than chance.
+    means: u64,
+}
+
+fn studied(scene: &Scene, (width, height): (u32, u32), regions: std::ops::Range<u64>, how: Weakened) -> Found {
+    const SIDE: u64 = 12;
+    let world = World::build(scene, &scene.cameras[0]);
+    let options = Options { width, height, ..Options::from_settings(&scene.settings) };
+    let certifier = Certifier::new(&world, &options);
+    let mut sampler = sampler(&world, &options, &NEVER);
+    let mut found = Found::default();
+    for i in regions {
+        let random = |k: u64| KeyedHash::new().with(i).with(k).unit();
+        let size = [0.02, 0.1, 0.5, 1.0, 4.0][(random(0) * 5.0) as usize] * (0.5 + random(1));
+        let (l, t) = (random(2) * (width as f64 - size), random(3) * (height as f64 - size));
+        let rect = [l, t, l + size, t + size * (0.5 + 0.5 * random(4))];
+        let bound = weaken(certifier.region(rect), how);
+        found.regions += 1;
+        found.formed += bound.form.is_some() as u64;
+        let place = |j: u64| {
+            let unit = |k: u64, axis: u64| (k as f64 + random(100 + 2 * j + axis)) / SIDE as f64;
+            [unit(j % SIDE, 0), unit(j / SIDE, 1)]
+        };
+        let points: Vec<[f64; 2]> = (0..SIDE * SIDE)
+            .map(|j| {
+                let [u, w] = place(j);
+                [rect[0] + u * (rect[2] - rect[0]), rect[1] + w * (rect[3] - rect[1])]
+            })
+            .collect();
+        let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
+        sampler.trace(rect, &points, &mut |j, light| {
+            found.points += 1;
+            let [u, w] = place(j as u64);
+            let (xi, eta) = (2.0 * u - 1.0, 2.0 * w - 1.0);
+            for c in 0..3 {
+                sum[c] += light[c];
+                squares[c] += light[c] * light[c];
+                let [lo, hi] = bound.range[c];
+                let in_range = lo - ROUNDING <= light[c] && light[c] <= hi + ROUNDING;
+                let in_form = bound.form.is_none_or(|f| {
+                    !f[c].is_known() || (light[c] - (f[c].c + f[c].x * xi + f[c].y * eta)).abs() <= f[c].r + ROUNDING
+                });
+                found.outside += !(in_range && in_form) as u64;
+            }
+        });
+        let n = (SIDE * SIDE) as f64;
+        let wrong = (0..3).any(|c| {
+            let (mean, variance) = (sum[c] / n, (squares[c] - sum[c] * sum[c] / n) / n);
+            // Strata are no worse than independent points; six of their deviations, and what one point may hide.
+            let seen = bound.range[c][1] - bound.range[c][0];
+            let chance = 6.0 * (if variance > 0.0 { variance } else { 0.0 } / n).sqrt() + smaller(seen, 1.0) / n;
+            mean + chance + ROUNDING < 0.25 * bound.sum[c][0] || mean - chance - ROUNDING > 0.25 * bound.sum[c][1]
+        });
+        found.means += wrong as u64;
+    }
+    found
+}
+
+#[test]
+fn light_lies_within_certificates() {
+    let found = studied(&every_shape(), (320, 180), 0..1_000, Weakened::No);
+    assert_eq!((found.outside, found.means), (0, 0), "{found:?}");
+    assert!(found.formed * 2 > found.regions, "{found:?}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn light_lies_within_many_certificates() {
+    for size in [(320, 180), (64, 36), (1280, 720)] {
+        let found = studied(&every_shape(), size, 0..200_000, Weakened::No);
+        assert_eq!((found.outside, found.means), (0, 0), "{found:?}");
+    }
+}
+
+#[test]
+fn weakened_certificates_are_noticed() {
+    let scene = every_shape();
+    let wrong = |how| {
+        let found = studied(&scene, (320, 180), 0..500, how);
+        (found.outside, found.means)
+    };
+    assert!(wrong(Weakened::Form).0 > 0, "what the form may miss");
+    assert!(wrong(Weakened::Range).0 > 0, "the range");
+    assert!(wrong(Weakened::Sum).1 > 0, "the integral");
+}
+
+#[test]
+fn what_isnt_covered_is_unknown_within_its_range() {
+    let mut b = Builder::new();
+    b.shape(Shape::Torus { at: v(0.0, 0.0, -20.0), r: 2.0, tube: 0.5, axis: DVec3::Z }, plain([0.5; 3]));
+    b.light(v(3.0, 4.0, 5.0), [0.5; 3]);
+    let world = World::build(&b.0, &b.0.cameras[0]);
+    let options = Options { width: 32, height: 32, ..Options::from_settings(&b.0.settings) };
+    let certifier = Certifier::new(&world, &options);
+    let bound = certifier.region([4.0, 4.0, 28.0, 28.0]);
+    let ceiling = certifier.ceiling(options.max_depth);
+    assert!((0..3).all(|c| bound.range[c][0] <= 0.0 + 1e-9 && bound.range[c][1] <= ceiling[c][1] + 1e-9));
+    let pixels = certify(&world, &options, &Target::new(8.0));
+    assert!(pixels.iter().any(|p| p.status == Status::Proved), "beside it");
+    assert!(pixels.iter().any(|p| p.status != Status::Proved), "on it");
+}
