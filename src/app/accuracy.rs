@@ -1,12 +1,52 @@
 //! A picture that is asked for by its accuracy: what the command line adds to the scene, and the one line that is said of it.
 
 use super::Stop;
-use super::args::AccuracyArgs;
+use super::argument::{confidence, max_error, seconds};
 use crate::diag::Diagnostic;
 use crate::film::{Depth, Format};
 use crate::render::Options;
 use crate::render::certify::Certificate;
 use crate::scene::{Accuracy, Precision};
+use clap::{Args, ValueEnum};
+
+/// How close to the truth the picture has to come, instead of how many rays a pixel.
+#[derive(Clone, Debug, Default, Args)]
+pub struct AccuracyArgs {
+    /// Largest error of any pixel, as in `2/255`; as many rays as it takes, and none where it is proved without.
+    #[arg(long, value_name = "E", value_parser = max_error, conflicts_with = "aa")]
+    pub max_error: Option<f64>,
+    /// Named errors: draft is 16/255, good 4/255, fine 1/255.
+    #[arg(long, value_enum, conflicts_with_all = ["aa", "max_error"])]
+    pub quality: Option<Quality>,
+    /// Time for tracing, as in `2s`: the picture gets as good as it can meanwhile, and says how good that is.
+    #[arg(long, value_name = "TIME", value_parser = seconds, conflicts_with = "aa")]
+    pub time: Option<f64>,
+    /// Probability of keeping the error, for a pixel where it is bounded and not proved. [default: 0.999]
+    #[arg(long, value_name = "P", value_parser = confidence, conflicts_with = "aa")]
+    pub confidence: Option<f64>,
+}
+
+/// `--quality`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quality {
+    /// 16/255.
+    Draft,
+    /// 4/255.
+    Good,
+    /// 1/255.
+    Fine,
+}
+
+impl Quality {
+    /// The error that it names.
+    pub fn max_error(self) -> f64 {
+        match self {
+            Quality::Draft => 16.0 / 255.0,
+            Quality::Good => 4.0 / 255.0,
+            Quality::Fine => 1.0 / 255.0,
+        }
+    }
+}
 
 impl AccuracyArgs {
     /// Puts what is asked for into `options`, which are the scene's, for a file of `format`. `asks_f32` says that the command

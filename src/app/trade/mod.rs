@@ -20,7 +20,8 @@ pub mod sweep;
 pub mod table;
 pub mod verdict;
 
-use super::args::{Quality, TradeArgs, TradeAxis};
+use super::accuracy::Quality;
+use super::args::{TradeArgs, TradeAxis};
 use super::load::{load, request, shown_name};
 use super::picture::{fits, look};
 use super::progress::Steps;
