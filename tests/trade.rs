@@ -186,7 +186,8 @@ fn an_interrupted_run_writes_what_it_has() {
     // The reference has a third of the budget, and the largest grids would take all of the rest.
     for seconds in [4, 5, 6, 7] {
         let desk = Desk::new();
-        let mut child = desk.command("trade a.scene --axis samples --size 640x480 --budget 9s -q").spawn().expect("it runs");
+        let mut child =
+            desk.command("trade a.scene --axis samples --size 640x480 --budget 9s -q").spawn().expect("it runs");
         std::thread::sleep(std::time::Duration::from_secs(seconds));
         let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
         let ended = child.wait().expect("it ends");

@@ -24,9 +24,10 @@ pub struct Certificate {
     pub pixels: Vec<Pixel>,
 }
 
-/// Errors of the rounds under a time limit, in codes: each takes about as long as all before it. A smaller one than the last is
-/// only tried if it is asked for.
-const ROUNDS: [f64; 4] = [16.0, 4.0, 2.0, LAST];
+/// Errors of the rounds under a time limit, in codes: each takes about as long as all before it. With a larger one to begin with, more
+/// could be said a little earlier; but a value that keeps it for certain may be further from the truth than the sketch's is. A
+/// smaller one than the last is only tried if it is asked for.
+const ROUNDS: [f64; 3] = [4.0, 2.0, LAST];
 /// The last of them, where none is asked for.
 const LAST: f64 = 1.0;
 
@@ -105,7 +106,7 @@ struct Picture<'w> {
     sketch: Option<Film>,
 }
 
-/// From what error on, in codes, the sketch's value of a pixel is a better guess than the middle of what is proved of it.
+/// From what error on, in codes, the sketch's value of a pixel is a better guess than the middle of what is known of it.
 const COARSE: f64 = 2.0;
 
 impl<'w> Picture<'w> {
@@ -148,12 +149,12 @@ impl<'w> Picture<'w> {
         Target { quantum, confidence, ..Target::new(codes) }
     }
 
-    /// Puts the sketch's values where only a wide interval is proved, as far as they keep the error.
+    /// Puts the sketch's values where only a wide interval is known, as far as they keep the error.
     fn take_guesses(&mut self) {
         let (Some(sketch), target) = (self.sketch.take(), self.target(self.reached)) else { return };
         for (pixel, guess) in self.pixels.iter_mut().zip(&sketch.pixels) {
-            if pixel.status == Status::Proved && pixel.codes > COARSE {
-                *pixel = pixel.with_value(guess.map(f64::from), &target).unwrap_or(*pixel);
+            if pixel.status != Status::Open && pixel.codes > COARSE {
+                *pixel = pixel.with_value(guess.map(f64::from), &target);
             }
         }
     }

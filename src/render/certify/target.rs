@@ -129,16 +129,24 @@ impl Pixel {
         self.status != Status::Open && self.codes <= codes
     }
 
-    /// It with another value within its interval, or at the end of that; `None` where the error of that is beyond the target.
-    pub(super) fn with_value(&self, value: [f64; 3], target: &Target) -> Option<Pixel> {
+    /// It with another value, or as near to that as its interval and the target allow.
+    pub(super) fn with_value(&self, value: [f64; 3], target: &Target) -> Pixel {
         let (mut at, mut half_width, mut codes) = (self.value, self.half_width, 0.0);
+        let reach = target.before_rounding();
         for c in 0..3 {
             let (lo, hi) = (self.value[c] - self.half_width[c], self.value[c] + self.half_width[c]);
-            at[c] = stored(larger(smaller(value[c], hi), lo));
+            // No further from either end than the target is.
+            let (least, most) = (larger(code(hi) - reach, code(lo)), smaller(code(lo) + reach, code(hi)));
+            let wanted = code(value[c]);
+            if least <= wanted && wanted <= most {
+                at[c] = stored(value[c]);
+            } else if least <= most {
+                at[c] = stored(decode_srgb(if wanted < least { least } else { most } / 255.0));
+            }
             half_width[c] = larger(hi - at[c], at[c] - lo);
             codes = larger(codes, target.error(at[c], [lo, hi]));
         }
-        (codes <= target.codes).then_some(Pixel { value: at, half_width, codes, ..*self })
+        if codes <= target.codes { Pixel { value: at, half_width, codes, ..*self } } else { *self }
     }
 
     /// What is known after another attempt. What fell short of its target replaces nothing that is certain or likely.
@@ -189,14 +197,19 @@ mod tests {
     }
 
     #[test]
-    fn another_value_stays_in_the_interval() {
-        let pixel = Pixel { value: [0.5; 3], half_width: [0.02; 3], status: Status::Proved, ..Pixel::unknown() };
+    fn another_value_stays_in_the_interval_and_keeps_the_error() {
+        let pixel =
+            Pixel { value: [0.5; 3], half_width: [0.02; 3], status: Status::Proved, codes: 5.0, ..Pixel::unknown() };
         let wide = Target::new(16.0);
-        let moved = pixel.with_value([0.51, 0.5, 0.9], &wide).unwrap();
+        let moved = pixel.with_value([0.51, 0.5, 0.9], &wide);
         assert_eq!((moved.value[0], moved.value[1], moved.status), (stored(0.51), 0.5, Status::Proved));
-        assert!((moved.value[2] - 0.52).abs() < 1e-7 && (moved.half_width[2] - 0.04).abs() < 1e-7);
+        assert!((moved.value[2] - 0.52).abs() < 1e-6 && (moved.half_width[2] - 0.04).abs() < 1e-6);
         assert!(moved.codes > wide.error(0.5, [0.48, 0.52]) && moved.codes <= 16.0);
-        assert!(pixel.with_value([0.9; 3], &Target::new(3.0)).is_none(), "its other end would be too far");
+        // Of a tighter target it goes less far.
+        let tight = Target::new(6.0);
+        let less = pixel.with_value([0.9; 3], &tight);
+        assert!(less.value[0] > 0.5 && less.value[0] < 0.52 && less.codes <= 6.0 && less.codes > 5.0, "{less:?}");
+        assert_eq!(pixel.with_value([0.9; 3], &Target::new(3.0)), pixel, "it doesn't keep that itself");
     }
 
     #[test]
