@@ -1,6 +1,6 @@
 //! `rtdsl trade`: what accuracy costs in this scene on this machine, measured.
 //!
-//! [`plan`] says which settings are tried, [`sweep`] measures them with the [`maker`] against the [`reference`](mod@reference), within the
+//! [`plan`] says which settings are tried, [`sweep`](mod@sweep) measures them with the [`maker`] against the [`reference`](mod@reference), within the
 //! [`budget`]; [`front`] and [`verdict`] draw the conclusions; [`report`], [`table`], [`plot`] and [`page`] tell of them.
 
 pub mod budget;
