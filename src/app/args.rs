@@ -5,6 +5,7 @@ use super::argument::{
     address, anti_aliasing, assignment, bits, compression, crop, glob_pattern, max_error, pixel, poll_interval,
     precision, seconds, size,
 };
+use super::trade::axis::Axis;
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
 use crate::scene::{AntiAliasing, Precision, Settings, range};
@@ -273,7 +274,7 @@ pub struct TradeArgs {
     pub out: Option<PathBuf>,
     /// Turn only this dial, and others so named. [default: all]
     #[arg(long, value_enum, value_name = "DIAL", value_delimiter = ',')]
-    pub axis: Vec<TradeAxis>,
+    pub axis: Vec<Axis>,
     /// Time for all of it: what wouldn't fit is left out.
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = seconds)]
     pub budget: f64,
@@ -292,23 +293,6 @@ pub struct TradeArgs {
     /// Print nothing but errors, and what `--suggest` asks for.
     #[arg(short, long)]
     pub quiet: bool,
-}
-
-/// `--axis`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum TradeAxis {
-    /// The largest error that is asked for.
-    Error,
-    /// Rays a pixel.
-    Samples,
-    /// The time that tracing may take.
-    Time,
-    /// Reflections and transmissions one after another.
-    Depth,
-    /// 64 bits or 32.
-    Precision,
-    /// Bounds of regions, or samples alone.
-    Certificates,
 }
 
 /// `rtdsl params`.

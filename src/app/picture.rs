@@ -68,6 +68,11 @@ pub fn recipe_of(
         .with("rtdsl:scene", recipe::scene_digest(&evaluated.sources))
         .with("rtdsl:settings", settings_line(options, camera))
         .with("rtdsl:parameters", parameters_line(evaluated));
+    with_accuracy(recipe, certificate)
+}
+
+/// Adds what can be said of the picture's error, where that was asked for.
+pub fn with_accuracy(recipe: Recipe, certificate: Option<&Certificate>) -> Recipe {
     match certificate {
         Some(c) => recipe.with("rtdsl:accuracy", accuracy::line(c)),
         None => recipe,

@@ -5,7 +5,7 @@ use super::args::RenderArgs;
 use super::load::{load, request, shown_name};
 use super::make::{Made, Make, Pixels};
 use super::map::{Kind, Map};
-use super::picture::{fits, format_of, look, recipe_of};
+use super::picture::{fits, format_of, look, recipe_of, with_accuracy};
 use super::progress::Bar;
 use super::stats::{self, AccuracyStats, Seconds, Stats};
 use super::view::{checked_crop, precision_word};
@@ -61,10 +61,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
 
     let encode_start = Instant::now();
     let Made { rays, threads, hash, pixels, certificate } = made;
-    let recipe = match &certificate {
-        Some(c) => recipe.with("rtdsl:accuracy", accuracy::line(c)),
-        None => recipe,
-    };
+    let recipe = with_accuracy(recipe, certificate.as_deref());
     match (&output, &target) {
         (Output::File(path), Some(target)) => target
             .write(|out| pixels.write(format, &recipe, out))
@@ -127,23 +124,21 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
 /// The maps of the error that are asked for.
 fn maps<'a>(args: &'a RenderArgs, evaluated: &Evaluated, options: &Options) -> Result<Vec<Map<'a>>, Stop> {
     let asked = [(&args.error_map, "--error-map", Kind::Error), (&args.status_map, "--status-map", Kind::Status)];
-    let strict = args.strict.then_some("--strict");
+    let given = || asked.into_iter().filter_map(|(path, word, kind)| Some((path.as_deref()?, word, kind)));
     if options.accuracy.is_none()
-        && let Some(word) = asked.iter().find(|a| a.0.is_some()).map(|a| a.1).or(strict)
+        && let Some(word) = given().map(|(_, word, _)| word).next().or(args.strict.then_some("--strict"))
     {
         let d = Diagnostic::error(format!("`{word}` is for pictures with a stated error"));
         return Err(Stop::usage(d.note("ask for one: `--max-error 2/255`, or `render(error: 2/255)` in the scene")));
     }
-    if let Some(word) = asked.iter().find(|a| a.0.is_some() && a.0 == &args.out).map(|a| a.1).or((args
-        .error_map
-        .is_some()
-        && args.error_map == args.status_map)
-        .then_some("--status-map"))
-    {
-        return Err(Stop::usage(Diagnostic::error(format!("`{word}` needs a file of its own"))));
+    let mut taken: Vec<&Path> = args.out.as_deref().into_iter().collect();
+    for (path, word, _) in given() {
+        if taken.contains(&path) {
+            return Err(Stop::usage(Diagnostic::error(format!("`{word}` needs a file of its own"))));
+        }
+        taken.push(path);
     }
-    let given = asked.into_iter().filter_map(|(path, _, kind)| Some((path.as_deref()?, kind)));
-    given.map(|(path, kind)| Map::new(path, kind, evaluated)).collect()
+    given().map(|(path, _, kind)| Map::new(path, kind, evaluated)).collect()
 }
 
 /// Where the picture goes and in what form.

@@ -3,6 +3,7 @@
 //! [`plan`] says which settings are tried, [`sweep`](mod@sweep) measures them with the [`maker`] against the [`reference`](mod@reference), within the
 //! [`budget`]; [`front`] and [`verdict`] draw the conclusions; [`report`], [`table`], [`plot`] and [`page`] tell of them.
 
+pub mod axis;
 pub mod budget;
 pub mod clock;
 pub mod front;
@@ -21,7 +22,7 @@ pub mod table;
 pub mod verdict;
 
 use super::accuracy::Quality;
-use super::args::{TradeArgs, TradeAxis};
+use super::args::TradeArgs;
 use super::load::{load, request, shown_name};
 use super::picture::{fits, look};
 use super::progress::Steps;
@@ -32,10 +33,11 @@ use crate::diag::Diagnostic;
 use crate::film::OutputFile;
 use crate::lang::Evaluated;
 use crate::render::World;
+use axis::Axis;
 use budget::Budget;
 use maker::Maker;
 use report::{Report, reference_row, rows};
-use setting::{Axis, Setting};
+use setting::Setting;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -70,8 +72,7 @@ pub fn run(args: &TradeArgs) -> Result<Exit, Stop> {
         }
         user.interrupt();
     });
-    let mut axes: Vec<Axis> =
-        if args.axis.is_empty() { Axis::ALL.into() } else { args.axis.iter().map(|a| a.axis()).collect() };
+    let mut axes: Vec<Axis> = if args.axis.is_empty() { Axis::ALL.into() } else { args.axis.clone() };
     // What 32 bits can't hold isn't traced with them.
     axes.retain(|axis| *axis != Axis::Precision || world.beyond_f32().is_none());
     let maker = Maker { world: &world, options: &options, budget: &budget };
@@ -203,19 +204,6 @@ impl Told for Bar {
     fn end(&self) {
         if let Some(bar) = &self.0 {
             bar.end();
-        }
-    }
-}
-
-impl TradeAxis {
-    fn axis(self) -> Axis {
-        match self {
-            TradeAxis::Error => Axis::Error,
-            TradeAxis::Samples => Axis::Samples,
-            TradeAxis::Time => Axis::Time,
-            TradeAxis::Depth => Axis::Depth,
-            TradeAxis::Precision => Axis::Precision,
-            TradeAxis::Certificates => Axis::Certificates,
         }
     }
 }

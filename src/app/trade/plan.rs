@@ -1,6 +1,7 @@
 //! Which settings are measured: one dial is turned at a time, all others stay as the scene has them.
 
-use super::setting::{Axis, Setting, Way};
+use super::axis::Axis;
+use super::setting::{Setting, Way};
 use crate::scene::{Precision, Settings};
 
 /// Errors that are asked for, in codes of 8 bits, from the cheapest on.

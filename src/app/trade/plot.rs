@@ -1,10 +1,11 @@
 //! Error against time as an SVG: both logarithmic, every dial with a mark and a colour of its own, the front as a staircase.
 //! Readable on light and dark ground: it brings its own.
 
+use super::axis::Axis;
 use super::front::positive;
 use super::report::{Report, Row};
 use super::scale::Scale;
-use super::setting::{Axis, number};
+use super::setting::number;
 use std::fmt::Write as _;
 
 /// Size of the plot, in pixels at its natural size.

@@ -1,7 +1,8 @@
 //! A setting that was measured.
 
+use super::axis::Axis;
 use super::maker::{Claim, Cost};
-use super::setting::{Axis, Setting};
+use super::setting::Setting;
 use crate::film::metric::Truth;
 use crate::film::metric::{Errors, Range};
 use crate::render::certify::{Pixel, Status};

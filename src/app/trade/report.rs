@@ -1,9 +1,10 @@
 //! What a sweep found, as data: `trade.json` and `trade.csv`. `docs/trade.md` tells of every field.
 
+use super::axis::Axis;
 use super::maker::{Claim, Cost};
 use super::point::Point;
 use super::reference::Kind;
-use super::setting::{Axis, Setting, Way};
+use super::setting::{Setting, Way};
 use super::sweep::{LeftOut, Sweep};
 use super::verdict::{Suggestion, Verdict};
 use crate::app::verify::report::Machine;

@@ -1,10 +1,11 @@
 //! Turns one dial after another and measures each position, for as long as the budget lasts.
 
+use super::axis::Axis;
 use super::maker::{Made, Maker};
 use super::plan::positions;
 use super::point::{Broken, Point};
 use super::reference::Reference;
-use super::setting::{Axis, Setting, Way, number};
+use super::setting::{Setting, Way, number};
 use crate::film::metric::{Errors, change, written};
 use crate::scene::Accuracy;
 use serde::Serialize;

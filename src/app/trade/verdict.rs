@@ -1,9 +1,10 @@
 //! What the figures mean, in words: what no longer pays, what must hold and doesn't, and what to choose.
 
+use super::axis::Axis;
 use super::front::{self, knee, slope};
 use super::point::Point;
 use super::reference::Kind;
-use super::setting::{Axis, Way, digits, number};
+use super::setting::{Way, digits, number};
 use super::sweep::Sweep;
 use crate::film::metric::{Errors, Range};
 use crate::verify::lower_limit;

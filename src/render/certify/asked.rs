@@ -3,6 +3,7 @@
 
 use super::super::options::{Options, Progress, RayCounts, Rendered, Silent};
 use super::super::world::World;
+use super::picture::threads;
 use super::sketch::{Pass, Sketch};
 use super::{Control, Pixel, Status, Summary, Target, refine};
 use crate::film::Film;
@@ -171,6 +172,6 @@ impl<'w> Picture<'w> {
             pixels: pixels.iter().map(|p| p.value.map(|v| v as f32)).collect(),
         };
         let certificate = Some(Box::new(Certificate { accuracy, reached, summary, pixels }));
-        Rendered { film, rays, threads: 1, certificate }
+        Rendered { film, rays, threads: threads(options), certificate }
     }
 }

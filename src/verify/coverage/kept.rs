@@ -1,6 +1,7 @@
 //! Counts which stated errors are kept.
 
 use super::binomial::{lower_limit, upper_limit};
+use crate::diag::thousands;
 use crate::render::certify::{Pixel, Status, Target};
 use crate::verify::{Bound, Figure};
 
@@ -52,10 +53,9 @@ impl Kept {
     /// The figures of `what`, where bounded pixels were to keep their error with probability `confidence`.
     pub fn figures(&self, what: &str, confidence: f64) -> Vec<Figure> {
         let [proved, bounded, estimated] = self.told;
-        let count = words;
         let mut figures = Vec::new();
         if proved > 0 {
-            let text = format!("{what}: of {} proved, beyond", count(proved));
+            let text = format!("{what}: of {} proved, beyond", thousands(proved));
             figures.push(Figure::none_of(text, self.broken[0]));
             let text = format!("{what}: largest error of a proved pixel, of the one stated");
             figures.push(Figure::new(text, self.nearest, "", Bound::AtMost(1.0 + 1e-5)));
@@ -68,11 +68,12 @@ impl Kept {
                 true => (upper_limit(self.broken[1], bounded, 0.05), "upper"),
                 false => (lower_limit(self.broken[1], bounded, 0.05), "lower"),
             };
-            let text = format!("{what}: of {} bounded, {} beyond; {word} 95 % limit", count(bounded), self.broken[1]);
+            let text =
+                format!("{what}: of {} bounded, {} beyond; {word} 95 % limit", thousands(bounded), self.broken[1]);
             figures.push(Figure::new(text, 100.0 * limit, "%", Bound::AtMost(100.0 * allowed)));
         }
         if estimated > 0 {
-            let text = format!("{what}: of {} estimated, beyond", count(estimated));
+            let text = format!("{what}: of {} estimated, beyond", thousands(estimated));
             figures.push(Figure::new(text, 100.0 * self.broken[2] as f64 / estimated as f64, "%", Bound::None));
         }
         if self.open > 0 {
@@ -85,17 +86,4 @@ impl Kept {
     pub fn broken(&self) -> u64 {
         self.broken[0] + self.broken[1]
     }
-}
-
-/// `12,345`.
-pub(super) fn words(n: u64) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(c);
-    }
-    text
 }
