@@ -183,6 +183,15 @@ impl Sweep {
                 // Nothing cheaper than this is swept.
                 measured.or(Some(ROOM * seconds(&self.points[0]) * (n * n) as f64))
             }
+            Way::Adaptive(n) => {
+                let mut measured = self.points.iter().rev();
+                let measured = measured.find_map(|p| match p.setting.way {
+                    Way::Adaptive(m) => Some(seconds(p) * n as f64 / m as f64),
+                    _ => None,
+                });
+                // No more than all pixels would take.
+                measured.or(Some(ROOM * seconds(&self.points[0]) * n as f64))
+            }
             Way::Error(codes) => {
                 let known = self.reference.climb.expected(codes);
                 let mut measured = self.points.iter().rev().filter(|p| matches!(p.setting.way, Way::Error(_)));

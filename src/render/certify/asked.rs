@@ -2,10 +2,10 @@
 //! short. What a round has brought to its error stays, whatever becomes of the next.
 
 use super::super::options::{Options, Progress, RayCounts, Rendered, Silent};
+use super::super::sketch::{PASSES, Sketch};
 use super::super::world::World;
 use super::picture::threads;
-use super::sketch::{Pass, Sketch};
-use super::{Control, Pixel, Status, Summary, Target, refine};
+use super::{Control, Pixel, Refined, Status, Summary, Target, refine};
 use crate::film::Film;
 use crate::scene::Accuracy;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -31,9 +31,6 @@ pub struct Certificate {
 const ROUNDS: [f64; 3] = [4.0, 2.0, LAST];
 /// The last of them, where none is asked for.
 const LAST: f64 = 1.0;
-
-/// Where nothing is certain yet: each takes about as long as all before it, and halves what is visible of the error.
-const PASSES: [Pass; 3] = [Pass { rays: 16, codes: 8 }, Pass { rays: 64, codes: 4 }, Pass { rays: 256, codes: 3 }];
 
 /// How often it is looked whether work is to end: unnoticeable, and it costs nothing.
 const GLANCE: Duration = Duration::from_millis(2);
@@ -68,6 +65,7 @@ fn until<'w>(
     cancel: &AtomicBool,
 ) -> Option<Picture<'w>> {
     let mut sketch = Sketch::new(world, options, cancel)?;
+    let part = options.crop_or_all();
     let over = AtomicBool::new(false);
     let picture = thread::scope(|s| {
         let watchman = s.spawn(|| {
@@ -76,7 +74,7 @@ fn until<'w>(
             }
             over.store(true, Relaxed);
         });
-        let is_whole = PASSES.iter().all(|pass| sketch.pass(*pass, &over));
+        let is_whole = PASSES.iter().all(|pass| sketch.pass(*pass, (part, &Silent), &over));
         let mut picture = Picture::begun(sketch, accuracy);
         if is_whole {
             // Pixels are told of once, and nobody knows in which round they come to their end.
@@ -138,7 +136,8 @@ impl<'w> Picture<'w> {
     /// Brings all pixels to an error, in codes; whether it got through.
     fn round(&mut self, codes: f64, control: Control<'_>) -> bool {
         let target = self.target(codes);
-        let is_whole = refine(self.world, self.options, &target, &mut self.pixels, control);
+        let Refined { is_whole, rays } = refine(self.world, self.options, &target, &mut self.pixels, control);
+        self.rays = self.rays.plus(rays);
         if is_whole {
             self.reached = codes;
         }
@@ -162,10 +161,9 @@ impl<'w> Picture<'w> {
 
     fn finished(mut self) -> Rendered {
         self.take_guesses();
-        let Picture { options, accuracy, reached, pixels, mut rays, .. } = self;
+        let Picture { options, accuracy, reached, pixels, rays, .. } = self;
         let part = options.crop_or_all();
         let summary = Summary::of(&pixels, reached);
-        rays.camera += summary.samples;
         let film = Film {
             width: part.width,
             height: part.height,

@@ -4,9 +4,9 @@
 //! leave open: a feature of up to 3/n of the pixel (the rule of three), as bright as anything can be there.
 
 use super::super::bounds::{larger, smaller};
+use super::super::sobol;
 use super::bound::Span;
 use super::sampler::Sampler;
-use super::sobol;
 use super::target::Target;
 use crate::math::fun;
 use crate::math::hash::KeyedHash;
