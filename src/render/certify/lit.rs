@@ -78,14 +78,14 @@ impl<'c> Study<'c> {
             let share = three!(c => shares.reflect[c].abs() + shares.transmit[c].abs());
             return own.plus(Bound::within(p, self.scene.ceiling(depth - 1)).times(share));
         }
-        let back = match met.at {
+        let back = self.onward(p, shares.reflect, depth - 1, |study| match met.at {
             Some(o) if met.bent.is_none() => {
                 let d = mirrored(met.d, met.n);
-                self.seen(p, &Bundle { o, d, start: Some(met.start), rect: None }, depth - 1)
+                study.seen(p, &Bundle { o, d, start: Some(met.start), rect: None }, depth - 1)
             }
-            _ => Bound::within(p, self.scene.ceiling(depth - 1)),
-        };
-        own.plus(back.times(shares.reflect))
+            _ => Bound::within(p, study.scene.ceiling(depth - 1)),
+        });
+        own.plus(back)
     }
 
     /// Ambient light and that of all lights.

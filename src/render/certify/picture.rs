@@ -58,7 +58,7 @@ pub fn refine(
     pixels: &mut [Pixel],
     control: Control<'_>,
 ) -> Refined {
-    let certifier = Certifier::new(world, options);
+    let certifier = Certifier::new(world, options).for_target(target);
     let affordable = affordable(&certifier, options, target, control.cancel);
     let blocks = blocks(options, pixels);
     let next = AtomicUsize::new(0);

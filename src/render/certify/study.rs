@@ -1,5 +1,6 @@
 //! The study of one region: what all its steps share, and the cut in two.
 
+use super::super::bounds::larger;
 use super::bound::{Bound, Span};
 use super::bundle::Bundle;
 use super::certifier::Certifier;
@@ -19,6 +20,8 @@ pub struct Study<'c> {
     pub undivided: bool,
     /// Whether a mean was taken that is the better known the wider the region is.
     pub in_rows: bool,
+    /// The most weight of the rays at hand.
+    weight: f64,
     /// Cuts so far.
     pieces: u32,
 }
@@ -29,7 +32,7 @@ pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> B
 impl<'c> Study<'c> {
     /// With nothing known and nothing spent.
     pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
-        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, pieces: 0 }
+        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, weight: 1.0, pieces: 0 }
     }
 
     /// What is known of the light in a rectangle of the picture: left, top, right, bottom.
@@ -46,6 +49,26 @@ impl<'c> Study<'c> {
     /// What is sure without looking.
     pub fn unknown(&self, p: &Polygon) -> Bound {
         Bound::within(p, self.ceiling)
+    }
+
+    /// The light of rays that go on up to `depth` times more and carry these shares: looked for, unless it is too faint to matter.
+    pub fn onward(
+        &mut self,
+        p: &Polygon,
+        shares: [f64; 3],
+        depth: u32,
+        look: impl FnOnce(&mut Self) -> Bound,
+    ) -> Bound {
+        let ceiling = self.scene.ceiling(depth);
+        let most = |of: &dyn Fn(usize) -> f64| (0..3).map(|c| shares[c].abs() * of(c)).fold(0.0, larger);
+        if self.weight * most(&|c| ceiling[c][1] - ceiling[c][0]) <= self.scene.faint {
+            return Bound::within(p, ceiling).times(shares);
+        }
+        let outer = (self.weight, self.ceiling);
+        (self.weight, self.ceiling) = (self.weight * most(&|_| 1.0), ceiling);
+        let bound = look(self);
+        (self.weight, self.ceiling) = outer;
+        bound.times(shares)
     }
 
     /// Goes both ways of the test g ≥ 0, each on its side of the cut.

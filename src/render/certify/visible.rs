@@ -111,10 +111,7 @@ impl<'c> Study<'c> {
                 let mut rest = hits.clone();
                 rest.met.retain(|&i| i != first);
                 let behind = View { depth: view.depth - 1, ..*view };
-                let outer = std::mem::replace(&mut self.ceiling, self.scene.ceiling(behind.depth));
-                let bound = self.in_order(p, &behind, &rest);
-                self.ceiling = outer;
-                light.plus(bound.times(share))
+                light.plus(self.onward(p, share, behind.depth, |study| study.in_order(p, &behind, &rest)))
             }
         }
     }

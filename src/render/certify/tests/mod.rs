@@ -1,6 +1,7 @@
 //! Certificates hold: light at random points of random regions lies within the form and the range, means within the sums; a bound
 //! that is a little too narrow is noticed; and pictures keep their promise. Here are the scenes.
 
+mod faint;
 mod picture;
 mod region;
 
