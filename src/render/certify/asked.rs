@@ -21,7 +21,7 @@ pub struct Certificate {
     pub reached: f64,
     /// How many pixels keep it, how surely.
     pub summary: Summary,
-    /// Every pixel that was made, row by row.
+    /// Every pixel that was made, row by row; empty where time was over before anything was known of any.
     pub pixels: Vec<Pixel>,
 }
 
@@ -66,25 +66,35 @@ fn until<'w>(
 ) -> Option<Picture<'w>> {
     let mut sketch = Sketch::new(world, options, cancel)?;
     let part = options.crop_or_all();
+    let is_whole =
+        watched(deadline, cancel, |over| PASSES.iter().all(|pass| sketch.pass(*pass, (part, &Silent), over)));
+    if !is_whole {
+        return Some(Picture::sketched(sketch, accuracy));
+    }
+    let begin = Instant::now();
+    let mut picture = Picture::begun(sketch, accuracy);
+    // To account for all pixels at the end takes about as long as to write them down.
+    let deadline = deadline.checked_sub(begin.elapsed()).unwrap_or(deadline);
+    // Pixels are told of once, and nobody knows in which round they come to their end.
+    watched(deadline, cancel, |over| picture.rounds(Control { progress: &Silent, cancel: over }));
+    Some(picture)
+}
+
+/// Works until it is done, or tells it to end when the time is over or `cancel` is set.
+fn watched<T>(deadline: Instant, cancel: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
     let over = AtomicBool::new(false);
-    let picture = thread::scope(|s| {
+    thread::scope(|s| {
         let watchman = s.spawn(|| {
             while !over.load(Relaxed) && !cancel.load(Relaxed) && Instant::now() < deadline {
                 thread::park_timeout(GLANCE);
             }
             over.store(true, Relaxed);
         });
-        let is_whole = PASSES.iter().all(|pass| sketch.pass(*pass, (part, &Silent), &over));
-        let mut picture = Picture::begun(sketch, accuracy);
-        if is_whole {
-            // Pixels are told of once, and nobody knows in which round they come to their end.
-            picture.rounds(Control { progress: &Silent, cancel: &over });
-        }
+        let done = work(&over);
         over.store(true, Relaxed);
         watchman.thread().unpark();
-        picture
-    });
-    Some(picture)
+        done
+    })
 }
 
 /// The errors of the rounds, in codes: the last is the one asked for.
@@ -115,13 +125,18 @@ impl<'w> Picture<'w> {
         Picture { world, options, accuracy, reached: 255.0, pixels, rays: RayCounts::default(), sketch: None }
     }
 
+    /// With something to show of every pixel, of none of which anything is known, or will be.
+    fn sketched(sketch: Sketch<'w>, accuracy: Accuracy) -> Picture<'w> {
+        let Sketch { world, options, film, rays, .. } = sketch;
+        let reached = rounds(accuracy).next().unwrap_or(LAST);
+        Picture { world, options, accuracy, reached, pixels: Vec::new(), rays, sketch: Some(film) }
+    }
+
     /// With something to show of every pixel.
     fn begun(sketch: Sketch<'w>, accuracy: Accuracy) -> Picture<'w> {
-        let Sketch { world, options, film, rays, .. } = sketch;
         let pixel = |light: &[f32; 3]| Pixel { value: light.map(f64::from), ..Pixel::unknown() };
-        let pixels = film.pixels.iter().map(pixel).collect();
-        let reached = rounds(accuracy).next().unwrap_or(LAST);
-        Picture { world, options, accuracy, reached, pixels, rays, sketch: Some(film) }
+        let pixels = sketch.film.pixels.iter().map(pixel).collect();
+        Picture { pixels, ..Picture::sketched(sketch, accuracy) }
     }
 
     /// One round after another, as far as it goes.
@@ -160,6 +175,12 @@ impl<'w> Picture<'w> {
     }
 
     fn finished(mut self) -> Rendered {
+        if let (true, Some(film)) = (self.pixels.is_empty(), self.sketch.take()) {
+            let Picture { options, accuracy, reached, pixels, rays, .. } = self;
+            let summary = Summary { open: film.pixels.len(), ..Summary::default() };
+            let certificate = Some(Box::new(Certificate { accuracy, reached, summary, pixels }));
+            return Rendered { film, rays, threads: threads(options), certificate };
+        }
         self.take_guesses();
         let Picture { options, accuracy, reached, pixels, rays, .. } = self;
         let part = options.crop_or_all();
