@@ -21,12 +21,22 @@ pub enum Axis {
     Precision,
     /// Bounds of regions, or samples alone.
     Certificates,
+    /// Rays and depth at once: a few settings, spread evenly.
+    Mixed,
 }
 
 impl Axis {
     /// All, in the order in which they are swept.
-    pub const ALL: [Axis; 7] =
-        [Axis::Error, Axis::Samples, Axis::Adaptive, Axis::Time, Axis::Depth, Axis::Precision, Axis::Certificates];
+    pub const ALL: [Axis; 8] = [
+        Axis::Error,
+        Axis::Samples,
+        Axis::Adaptive,
+        Axis::Time,
+        Axis::Depth,
+        Axis::Precision,
+        Axis::Certificates,
+        Axis::Mixed,
+    ];
 
     /// Its name on the command line.
     pub fn word(self) -> &'static str {
@@ -38,6 +48,7 @@ impl Axis {
             Axis::Depth => "depth",
             Axis::Precision => "precision",
             Axis::Certificates => "certificates",
+            Axis::Mixed => "mixed",
         }
     }
 

@@ -88,6 +88,9 @@ impl Setting {
     /// In a few characters, for a plot.
     pub fn label(&self, base: &Setting) -> String {
         match self.way {
+            way if self.depth != base.depth && way != base.way => {
+                format!("{}, d {}", Setting { depth: base.depth, ..*self }.label(base), self.depth)
+            }
             _ if self.depth != base.depth => format!("depth {}", self.depth),
             _ if self.precision != base.precision => precision_word(self.precision).into(),
             Way::Grid(1) => "off".into(),

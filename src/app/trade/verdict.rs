@@ -166,7 +166,7 @@ fn dials(sweep: &Sweep) -> Vec<String> {
                     }
                 }
             }
-            Axis::Error | Axis::Samples | Axis::Adaptive | Axis::Time => {}
+            Axis::Error | Axis::Samples | Axis::Adaptive | Axis::Time | Axis::Mixed => {}
         }
     }
     remarks
