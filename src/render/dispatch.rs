@@ -88,7 +88,7 @@ pub fn render_tiles(
 }
 
 /// A tracer of any points of the picture, in 64-bit numbers, until `cancel` is set.
-pub fn sampler<'w>(world: &'w World, options: &Options, cancel: &'w AtomicBool) -> Box<dyn Sampler + 'w> {
+pub fn sampler<'w>(world: &'w World, options: &Options, cancel: &'w AtomicBool) -> Box<dyn Sampler + Send + 'w> {
     match Build::of(options.instructions) {
         Build::Common => Box::new(LaneSampler::<f64>::new(world, options, cancel)),
         #[cfg(target_arch = "x86_64")]

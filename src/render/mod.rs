@@ -48,6 +48,7 @@ mod sobol;
 mod span;
 mod spawn;
 mod standing;
+mod supersampler;
 mod surface_pattern;
 mod texture;
 mod tile;

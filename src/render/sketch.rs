@@ -2,14 +2,12 @@
 //! aren't like their neighbours'. Nothing is promised of it, for what lies between all first rays is never found; but it is what
 //! a short time is best spent on, and every pixel's bits depend on nothing but the pixels around it.
 
-use super::certify::Sampler;
 use super::crew::{crew, useful};
 use super::dispatch;
 use super::options::{Crop, Options, Progress, RayCounts, Rendered, Silent};
-use super::sobol;
+use super::supersampler::{ACROSS, BAND, Patterns, Supersampler};
 use super::world::World;
 use crate::film::{Depth, Developer, Film};
-use crate::math::hash::KeyedHash;
 use crate::scene::AntiAliasing;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -61,7 +59,8 @@ pub fn render(
     let rows = sketch.film.pixels.chunks(wide.width as usize).skip((part.y - y) as usize).take(part.height as usize);
     let pixels = rows.flat_map(|row| &row[(part.x - x) as usize..][..part.width as usize]).copied().collect();
     let film = Film { width: part.width, height: part.height, pixels };
-    Some(Rendered { film, rays: sketch.rays, threads: threads(&options), certificate: None })
+    let threads = useful(options.threads, wide.height.div_ceil(BAND) as usize);
+    Some(Rendered { film, rays: sketch.rays, threads, certificate: None })
 }
 
 /// A picture without a certificate.
@@ -80,23 +79,6 @@ pub struct Sketch<'w> {
     is_edge: Vec<bool>,
 }
 
-/// Tag of what the random numbers are for.
-const SKETCH: u64 = 3;
-
-/// So many sets of points within a pixel are taken in turn by chance: neighbours rarely have the same, and making one for each
-/// would cost as much as its rays.
-const PATTERNS: u64 = 61;
-
-/// Rays are traced together by rectangles of so many pixels by so many: as many as a batch holds, were each to get one.
-const ACROSS: u32 = 32;
-/// See [`ACROSS`].
-const BAND: u32 = 8;
-
-/// Threads that are of use.
-fn threads(options: &Options) -> usize {
-    useful(options.threads, options.crop_or_all().height.div_ceil(BAND) as usize)
-}
-
 impl<'w> Sketch<'w> {
     /// One ray through the middle of every pixel; `None` where `cancel` was set meanwhile.
     pub fn new(world: &'w World, options: &'w Options, cancel: &AtomicBool) -> Option<Sketch<'w>> {
@@ -109,15 +91,28 @@ impl<'w> Sketch<'w> {
     /// More rays where neighbours differ, until no more of them do or [`ROUNDS`] are over; whether it got through. Bands that weren't
     /// reached are left as they are. `progress` is told of what is in `part` of the picture.
     pub fn pass(&mut self, pass: Pass, (part, progress): (Crop, &dyn Progress), cancel: &AtomicBool) -> bool {
-        let patterns = Patterns::new(pass.rays);
         let all = self.options.crop_or_all();
+        let (world, options, patterns) = (self.world, self.options, Patterns::new(pass.rays));
+        // Workers' memory is made once.
+        let idle = Mutex::new(Vec::new());
+        let worker = || {
+            let known = idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+            known.unwrap_or_else(|| Supersampler::new(dispatch::sampler(world, options, cancel), &patterns, all))
+        };
         let mut changed = vec![true; all.height.div_ceil(BAND) as usize];
-        for _ in 0..ROUNDS {
-            self.mark(pass.codes, &changed);
-            changed = self.round(&patterns, cancel);
-            if cancel.load(Relaxed) || !changed.contains(&true) {
+        for round in 0..ROUNDS {
+            let marked = self.mark(pass.codes, &changed);
+            // Those that were marked before this pass lack rays, too.
+            let wanted = if round == 0 { changed } else { marked };
+            if !wanted.contains(&true) || cancel.load(Relaxed) {
                 break;
             }
+            let workers;
+            (changed, workers) = self.round(&wanted, &worker, cancel);
+            idle.lock().unwrap_or_else(PoisonError::into_inner).extend(workers);
+        }
+        for worker in idle.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            self.rays = self.rays.plus(worker.counts());
         }
         let is_whole = !cancel.load(Relaxed);
         if is_whole {
@@ -126,52 +121,69 @@ impl<'w> Sketch<'w> {
         is_whole
     }
 
-    /// The rays that pixels lack which are marked; which bands that changes.
-    fn round(&mut self, patterns: &Patterns, cancel: &AtomicBool) -> Vec<bool> {
-        let all = self.options.crop_or_all();
+    /// The rays that pixels of some bands lack which are marked; which bands that changes, and those who did it.
+    fn round<'p>(
+        &mut self,
+        wanted: &[bool],
+        worker: &(dyn Fn() -> Supersampler<'p, 'p> + Sync),
+        cancel: &AtomicBool,
+    ) -> (Vec<bool>, Vec<Supersampler<'p, 'p>>) {
+        let (all, threads) = (self.options.crop_or_all(), self.threads(wanted));
         let band = all.width.max(1) as usize * BAND as usize;
         let bands = self.film.pixels.chunks_mut(band).zip(self.taken.chunks_mut(band)).zip(self.is_edge.chunks(band));
         let bands: Vec<_> = (all.y..).step_by(BAND as usize).zip(bands).map(Mutex::new).collect();
         let changed: Vec<AtomicBool> = bands.iter().map(|_| AtomicBool::new(false)).collect();
         let next = AtomicUsize::new(0);
-        let counts = crew(threads(self.options), || {
-            let mut worker = Worker::new(dispatch::sampler(self.world, self.options, cancel), patterns, all);
+        let workers = crew(threads, || {
+            let mut worker = worker();
             while let number = next.fetch_add(1, Relaxed)
                 && let Some(band) = bands.get(number)
                 && !cancel.load(Relaxed)
             {
+                if !wanted[number] {
+                    continue;
+                }
                 // Locked once, by the thread whose turn it is.
                 let mut band = band.lock().unwrap_or_else(PoisonError::into_inner);
                 let (y, ((pixels, taken), is_edge)) = &mut *band;
                 for x in (0..all.width).step_by(ACROSS as usize) {
                     worker.find_edges(x, taken, is_edge);
-                    if !worker.edges.is_empty() {
+                    if !worker.is_idle() {
                         changed[number].store(true, Relaxed);
                         worker.trace(*y, (pixels, taken), cancel);
                     }
                 }
             }
-            worker.sampler.counts()
+            worker
         });
-        self.rays = counts.into_iter().fold(self.rays, RayCounts::plus);
-        changed.into_iter().map(AtomicBool::into_inner).collect()
+        (changed.into_iter().map(AtomicBool::into_inner).collect(), workers)
+    }
+
+    /// Threads that are of use for so many bands.
+    fn threads(&self, bands: &[bool]) -> usize {
+        useful(self.options.threads, bands.iter().filter(|b| **b).count())
     }
 
     /// Marks pixels that differ from a neighbour beside or above or below them, where that may be since bands have changed; those that
-    /// are marked stay so.
-    fn mark(&mut self, codes: u8, changed: &[bool]) {
+    /// are marked stay so. In which bands any is that wasn't.
+    fn mark(&mut self, codes: u8, changed: &[bool]) -> Vec<bool> {
+        let concerned = |i: usize| changed[i.saturating_sub(1)..(i + 2).min(changed.len())].contains(&true);
+        let concerned: Vec<bool> = (0..changed.len()).map(concerned).collect();
+        let threads = self.threads(&concerned);
         let width = self.film.width.max(1) as usize;
         let (pixels, rows) = (&self.film.pixels, self.film.pixels.len() / width);
         let bands: Vec<_> = self.is_edge.chunks_mut(width * BAND as usize).enumerate().map(Mutex::new).collect();
+        let marked: Vec<AtomicBool> = bands.iter().map(|_| AtomicBool::new(false)).collect();
         let next = AtomicUsize::new(0);
-        crew(threads(self.options), || {
+        crew(threads, || {
             let (mut shown, mut differ) = (Vec::new(), vec![0; 3 * width]);
             while let Some(band) = bands.get(next.fetch_add(1, Relaxed)) {
                 let mut band = band.lock().unwrap_or_else(PoisonError::into_inner);
                 let (number, is_edge) = &mut *band;
-                if !changed[number.saturating_sub(1)..(*number + 2).min(changed.len())].contains(&true) {
+                if !concerned[*number] {
                     continue;
                 }
+                let mut any = false;
                 // With the row above and the row below.
                 let first = *number * BAND as usize;
                 let (from, to) = (first.saturating_sub(1), (first + BAND as usize + 1).min(rows));
@@ -187,11 +199,15 @@ impl<'w> Sketch<'w> {
                         note_differences(here, other, codes, &mut differ);
                     }
                     for (is_edge, differ) in is_edge.iter_mut().zip(differ.chunks_exact(3)) {
-                        *is_edge |= differ.iter().any(|d| *d != 0);
+                        let differs = differ.iter().any(|d| *d != 0);
+                        any |= differs & !*is_edge;
+                        *is_edge |= differs;
                     }
                 }
+                marked[*number].store(any, Relaxed);
             }
         });
+        marked.into_iter().map(AtomicBool::into_inner).collect()
     }
 }
 
@@ -207,94 +223,6 @@ fn tell(pixels: &mut [[f32; 3]], all: Crop, (part, progress): (Crop, &dyn Progre
     let rows = pixels.chunks_mut(all.width.max(1) as usize).skip((part.y - all.y) as usize).take(part.height as usize);
     let rows: Vec<_> = rows.map(|row| &mut row[(part.x - all.x) as usize..][..part.width as usize]).collect();
     progress.finished(part, &rows);
-}
-
-/// Points within a pixel, to be taken by lot.
-struct Patterns {
-    rays: u32,
-    points: Vec<[f64; 2]>,
-}
-
-impl Patterns {
-    fn new(rays: u32) -> Patterns {
-        let of = |number| (0..rays).map(move |i| sobol::point(i, KeyedHash::new().with(SKETCH).with(number)));
-        Patterns { rays, points: (0..PATTERNS).flat_map(of).collect() }
-    }
-
-    /// Those of pixel (x, y).
-    fn of(&self, x: u32, y: u32) -> &[[f64; 2]] {
-        let key = KeyedHash::new().with(SKETCH).with(x as u64).with(y as u64);
-        &self.points[(key.bits() % PATTERNS) as usize * self.rays as usize..][..self.rays as usize]
-    }
-}
-
-/// One thread's work on a pass.
-struct Worker<'p, 'w> {
-    sampler: Box<dyn Sampler + 'w>,
-    patterns: &'p Patterns,
-    part: Crop,
-    /// Pixels of the rectangle at hand: their place in the band, by row and column.
-    edges: Vec<[u32; 2]>,
-    points: Vec<[f64; 2]>,
-    /// Of each point, which of those pixels it belongs to.
-    whose: Vec<u32>,
-    sums: Vec<[f64; 3]>,
-}
-
-impl<'p, 'w> Worker<'p, 'w> {
-    fn new(sampler: Box<dyn Sampler + 'w>, patterns: &'p Patterns, part: Crop) -> Worker<'p, 'w> {
-        let (edges, points, whose, sums) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Worker { sampler, patterns, part, edges, points, whose, sums }
-    }
-
-    /// Finds which pixels of a band, from column x on, want rays.
-    fn find_edges(&mut self, x: u32, taken: &[u32], is_edge: &[bool]) {
-        let width = self.part.width as usize;
-        self.edges.clear();
-        for (row, (taken, is_edge)) in (0..).zip(taken.chunks(width).zip(is_edge.chunks(width))) {
-            let columns = x..(x + ACROSS).min(self.part.width);
-            let wanted = |x: &u32| is_edge[*x as usize] && taken[*x as usize] < self.patterns.rays;
-            self.edges.extend(columns.filter(wanted).map(|x| [x, row]));
-        }
-    }
-
-    /// Traces the rays that those pixels lack, of which there is one at least.
-    fn trace(&mut self, y: u32, (pixels, taken): (&mut [[f32; 3]], &mut [u32]), cancel: &AtomicBool) {
-        let (part, rays) = (self.part, self.patterns.rays);
-        let [first, last] = ends(&self.edges);
-        let place = |[x, row]: [u32; 2]| (row * part.width + x) as usize;
-        self.points.clear();
-        self.whose.clear();
-        self.sums.clear();
-        for (i, &at) in (0..).zip(&self.edges) {
-            let (x, y) = (part.x + at[0], y + at[1]);
-            // The ray through the middle isn't one of the points, the others are the first of them.
-            let had = Some(taken[place(at)]).filter(|n| *n > 1).unwrap_or(0);
-            let points = &self.patterns.of(x, y)[had as usize..];
-            self.points.extend(points.iter().map(|[u, v]| [x as f64 + u, y as f64 + v]));
-            self.whose.resize(self.points.len(), i);
-            self.sums.push(pixels[place(at)].map(|mean| had as f64 * mean as f64));
-        }
-        let rect = [part.x + first[0], y + first[1], part.x + last[0] + 1, y + last[1] + 1].map(f64::from);
-        let (sums, whose) = (&mut self.sums, &self.whose);
-        self.sampler.trace(rect, &self.points, &mut |i, light| {
-            let sum = &mut sums[whose[i] as usize];
-            (0..3).for_each(|c| sum[c] += light[c]);
-        });
-        if cancel.load(Relaxed) {
-            return;
-        }
-        for (at, sum) in self.edges.iter().map(|at| place(*at)).zip(&self.sums) {
-            (pixels[at], taken[at]) = (sum.map(|s| (s / rays as f64) as f32), rays);
-        }
-    }
-}
-
-/// The corners of the smallest rectangle around some places.
-fn ends(places: &[[u32; 2]]) -> [[u32; 2]; 2] {
-    places.iter().fold([[u32::MAX; 2], [0; 2]], |[least, most], p| {
-        [[least[0].min(p[0]), least[1].min(p[1])], [most[0].max(p[0]), most[1].max(p[1])]]
-    })
 }
 
 #[cfg(test)]
