@@ -13,6 +13,8 @@ pub struct Way {
     /// What late trials cost: together, and alone.
     together: f64,
     alone: f64,
+    /// How many these come to.
+    weight: f64,
     /// Registers of rays until both are tried again.
     left: u32,
     /// Trials so far.
@@ -25,16 +27,15 @@ const PERIOD: u32 = 40;
 const LONG_PERIOD: u32 = 4 * PERIOD;
 /// Trials in a row at first.
 const AT_FIRST: u32 = 4;
-/// What counts of a trial after the next. Sums and not votes: a few registers of rays that run apart may take as long together as
-/// hundreds of others.
-const FADING: f64 = 7.0 / 8.0;
-/// A trial of rays together is given up where it costs this many times as much as they do alone.
-const HOPELESS: u32 = 8;
+/// What counts of a trial after the next.
+const FADING: f64 = 15.0 / 16.0;
+/// Rays together are given up, and go alone, where they cost this many times as much as rays alone lately did: a few that run apart
+/// may cost as much together as hundreds of others.
+const HOPELESS: f64 = 4.0;
 
 impl Way {
     /// Has `go` send a register of rays on its way: it is told whether together, and what that may cost at most, and gives what it did
-    /// cost. Where both ways are tried it is called twice, and has to begin anew; where the second costs more than it may, what
-    /// the first found counts.
+    /// cost. It may be called twice, and has to begin anew; where it costs more than it may, what was found before counts.
     ///
     /// `go` is called from one place of the code only, so that the tree's walk is compiled once, and inside the caller, which is where
     /// the registers' instructions may be used.
@@ -45,18 +46,27 @@ impl Way {
             return;
         }
         let tries = self.is_due();
-        let (mut together, mut most) = (!tries && self.together < self.alone, u32::MAX);
+        let mut together = !tries && self.together < self.alone;
+        let mut tried_alone = 0;
         loop {
+            let most = if together { (HOPELESS * self.alone / self.weight) as u32 } else { u32::MAX };
             let cost = go(together, most);
-            if !tries {
-                return;
+            let is_hopeless = cost > most;
+            match (tries, together) {
+                (true, false) => {
+                    self.weight = FADING * self.weight + 1.0;
+                    self.alone = FADING * self.alone + cost as f64;
+                    (tried_alone, together) = (cost, true);
+                }
+                (true, true) => {
+                    // What it takes to find out this way, the other included where need be.
+                    let all = cost as f64 + if is_hopeless { tried_alone as f64 } else { 0.0 };
+                    self.together = FADING * self.together + all;
+                    return;
+                }
+                (false, true) if is_hopeless => together = false,
+                (false, _) => return,
             }
-            let sum = if together { &mut self.together } else { &mut self.alone };
-            *sum = FADING * *sum + cost as f64;
-            if together {
-                return;
-            }
-            (together, most) = (true, cost.saturating_mul(HOPELESS));
         }
     }
 
