@@ -82,6 +82,7 @@ impl World {
             extremes: Vec::new(),
             flocks: Vec::new(),
             balls: Vec::new(),
+            has_rings: false,
             bvh: Bvh::default(),
             materials: Vec::new(),
             patterns: PatternTable::default(),
@@ -96,6 +97,7 @@ impl World {
         let (order, keys) = world.in_order(&standing, &digests, &numbers, wanted, cancel)?;
         let bounded = world.lay_out(&standing, &order, &numbers, cancel)?;
         drop((order, standing));
+        world.has_rings = world.primitives.iter().any(|p| matches!(p.kind, Kind::Ring(_)));
         world.balls = world.primitives.iter().map(|p| Ball::around(p, &world.maps)).collect();
         // Boxes are relative to the camera's place.
         let before = before.filter(|(old, _)| old.eye == world.eye);

@@ -6,7 +6,7 @@ use super::candidates::Candidates;
 use super::footprint::Recorder;
 use super::ray::Own;
 use super::shape::{Mesh, Visit};
-use super::span::{least, stored};
+use super::span::{least, spread, stored};
 use super::surface_pattern::PatternFrame;
 use super::touch::ButAtTheEnd;
 use super::way::Way;
@@ -255,6 +255,8 @@ impl<L: Lane> Open<'_, L> {
                     (rays.o, rays.l),
                     reach,
                     #[inline(always)]
+                    |k| world.cost_of_test(k, L::WIDTH),
+                    #[inline(always)]
                     |k| {
                         self.test_here(world, &[k], transparent, recorder);
                         self.reach()
@@ -337,7 +339,10 @@ impl<L: Lane> Leaves for InTree<'_, L> {
     }
     #[inline(always)]
     fn cost(&self, ids: &[u32]) -> u32 {
-        TEST * ids.len().div_ceil(L::WIDTH) as u32
+        match ids {
+            [id] => self.world.cost_of_test(*id, 1),
+            _ => TEST * ids.len().div_ceil(L::WIDTH) as u32,
+        }
     }
 }
 
@@ -353,14 +358,13 @@ impl<L: Lane> InTree<'_, L> {
     fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
         if self.wide.is_none() {
             let ray = self.open.rays;
-            let wide = |x: L::One| L::splat(least(x));
             self.wide = Some(ShadowRays {
-                source: wide(ray.source),
-                part: wide(ray.part),
-                outward: wide(ray.outward),
-                o: each3!(ray.o, x => wide(x)),
-                l: each3!(ray.l, x => wide(x)),
-                distance: wide(ray.distance),
+                source: spread::<L>(ray.source),
+                part: spread::<L>(ray.part),
+                outward: spread::<L>(ray.outward),
+                o: each3!(ray.o, x => spread::<L>(x)),
+                l: each3!(ray.l, x => spread::<L>(x)),
+                distance: spread::<L>(ray.distance),
                 light: ray.light,
                 touched: ray.touched,
             });

@@ -5,7 +5,7 @@ use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::{Mesh, Visit};
-use super::span::{least, stored};
+use super::span::{least, spread, stored};
 use super::way::Way;
 use super::world::World;
 use crate::math::real::each3;
@@ -153,6 +153,8 @@ impl<L: Lane> Nearest<L> {
                     (start.o, start.d),
                     t_max,
                     #[inline(always)]
+                    |k| world.cost_of_test(k, L::WIDTH),
+                    #[inline(always)]
                     |k| {
                         self.test_all(world, &[k], start);
                         L::select(start.live, self.t, -L::one())
@@ -223,7 +225,10 @@ impl<L: Lane> Leaves for InTree<'_, L> {
     }
     #[inline(always)]
     fn cost(&self, ids: &[u32]) -> u32 {
-        TEST * ids.len().div_ceil(L::WIDTH) as u32
+        match ids {
+            [id] => self.world.cost_of_test(*id, 1),
+            _ => TEST * ids.len().div_ceil(L::WIDTH) as u32,
+        }
     }
 }
 
@@ -232,13 +237,12 @@ impl<L: Lane> InTree<'_, L> {
     fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
         if self.wide.is_none() {
             let ray = &self.start;
-            let wide = |x: L::One| L::splat(least(x));
             self.wide = Some(Start {
-                o: each3!(ray.o, x => wide(x)),
-                d: each3!(ray.d, x => wide(x)),
-                primitive: wide(ray.primitive),
-                part: wide(ray.part),
-                outward: wide(ray.outward),
+                o: each3!(ray.o, x => spread::<L>(x)),
+                d: each3!(ray.d, x => spread::<L>(x)),
+                primitive: spread::<L>(ray.primitive),
+                part: spread::<L>(ray.part),
+                outward: spread::<L>(ray.outward),
                 live: Mask::splat(true),
             });
         }

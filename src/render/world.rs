@@ -6,7 +6,7 @@
 
 use super::ball::Ball;
 use super::bounds::{Bounds, larger};
-use super::bvh::Bvh;
+use super::bvh::{Bvh, TEST};
 use super::camera::CameraFrame;
 use super::confine::Confined;
 use super::frame::LinearMap;
@@ -21,11 +21,16 @@ use crate::math::{Affine, Dd, Mask, Real};
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{MaterialId, NodeId};
 
+/// What a torus' kernel costs a ray, in tests of the tree's nodes; roughly.
+const RING: u32 = 60;
+
 /// The scene as the tracer sees it.
 pub struct World {
     pub(super) primitives: Vec<Primitive>,
     /// Around each of them.
     pub(super) balls: Vec<Ball>,
+    /// Whether any is a torus.
+    pub(super) has_rings: bool,
     /// Node and material of each primitive in the scene.
     pub(super) origins: Vec<(NodeId, MaterialId)>,
     pub(super) maps: Vec<LinearMap>,
@@ -214,6 +219,17 @@ impl World {
         }
         let (mesh, k) = self.triangle(id);
         mesh.crossing(k, (o, d), own, visit);
+    }
+
+    /// What testing `rays` side by side against surface `id` costs, in tests of the tree's nodes.
+    #[inline(always)]
+    pub(super) fn cost_of_test(&self, id: u32, rays: usize) -> u32 {
+        if self.has_rings
+            && let Some(Primitive { kind: Kind::Ring(_), .. }) = self.primitives.get(id as usize)
+        {
+            return RING * rays as u32; // one after another
+        }
+        TEST
     }
 
     /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.

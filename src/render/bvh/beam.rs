@@ -209,6 +209,12 @@ impl Beam {
     }
 }
 
+/// The largest magnitude of the three, in each lane.
+#[inline(always)]
+fn largest<L: Lane>(v: [L; 3]) -> L {
+    v[0].abs().max(v[1].abs()).max(v[2].abs())
+}
+
 /// The rays of a register, each a [`Beam`] of its own: what they are made of is computed for all of them at once.
 pub struct Beams<L: Lane> {
     near_from: [[L::Elem; PADDING]; 3],
@@ -229,9 +235,8 @@ impl<L: Lane> Beams<L> {
     #[inline(always)]
     pub(super) fn new(fit: &Fit, bounds: &Bounds, (o, d): ([L; 3], [L; 3])) -> Beams<L> {
         let (zero, u) = (L::zero(), L::UNIT_ROUNDOFF);
-        let size = |v: [L; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
-        let reach = L::splat(16.0 * u) * size(o);
-        let mut sizes = stored(size(d));
+        let reach = L::splat(16.0 * u) * largest(o);
+        let mut sizes = stored(largest(d));
         for x in &mut sizes[..L::WIDTH] {
             *x = L::Elem::from_f64(power_below(x.to_f64()));
         }

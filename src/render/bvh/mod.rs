@@ -162,17 +162,18 @@ impl Bvh {
     /// `test` gives the lanes' new `t_max`; a lane is finished when that is not positive, and one that begins so has no ray.
     #[inline(always)]
     pub fn traverse<L: Lane>(&self, o: [L; 3], d: [L; 3], t_max: L, test: impl FnMut(u32) -> L) {
-        self.traverse_within(u32::MAX, (o, d), t_max, test);
+        self.traverse_within(u32::MAX, (o, d), t_max, |_| TEST, test);
     }
 
-    /// As [`traverse`](Bvh::traverse), but given up where it costs more than `most`. Gives what it cost: about as many node's
-    /// tests.
+    /// As [`traverse`](Bvh::traverse), but given up where it costs more than `most`. Gives what it cost, in node's tests; `cost` says
+    /// that of `test`.
     #[inline(always)]
     pub fn traverse_within<L: Lane>(
         &self,
         most: u32,
         (o, d): ([L; 3], [L; 3]),
         t_max: L,
+        cost: impl Fn(u32) -> u32,
         test: impl FnMut(u32) -> L,
     ) -> u32 {
         let alive = L::zero().lt(t_max);
@@ -183,7 +184,7 @@ impl Bvh {
                 || Slabs::new(o, d),
             );
             let t = farthest(t_max, alive);
-            let mut leaves = OneByOne { most, test, t_max, alive, slabs, fit: self.fit };
+            let mut leaves = OneByOne { most, cost, test, t_max, alive, slabs, fit: self.fit };
             return self.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t, &mut leaves);
         }
         0
@@ -242,8 +243,9 @@ pub enum Rays<L: Lane> {
 }
 
 /// Leaves whose primitives a function tests one by one.
-struct OneByOne<L: Lane, F> {
+struct OneByOne<L: Lane, C, F> {
     most: u32,
+    cost: C,
     test: F,
     t_max: L,
     alive: L::Mask,
@@ -252,13 +254,21 @@ struct OneByOne<L: Lane, F> {
     fit: Fit,
 }
 
-impl<L: Lane, F: FnMut(u32) -> L> Leaves for OneByOne<L, F> {
+impl<L: Lane, C: Fn(u32) -> u32, F: FnMut(u32) -> L> Leaves for OneByOne<L, C, F> {
     #[inline(always)]
     fn test(&mut self, ids: &[u32]) -> f64 {
         for id in ids {
             self.t_max = (self.test)(*id);
         }
         farthest(self.t_max, self.alive)
+    }
+    #[inline(always)]
+    fn cost(&self, ids: &[u32]) -> u32 {
+        let mut sum = 0;
+        for id in ids {
+            sum += (self.cost)(*id);
+        }
+        sum
     }
     #[inline(always)]
     fn most(&self) -> u32 {
