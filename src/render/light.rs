@@ -1,6 +1,7 @@
 //! How much of a light arrives: shadow rays, and what transparent objects let through.
 
 use super::batch::PADDING;
+use super::between::{Blocked, Met};
 use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
@@ -379,41 +380,6 @@ impl<L: Lane> InTree<'_, L> {
             if let (Some(id), true) = (self.open.blocker, self.recorder.is_on()) {
                 self.recorder.shaded(id);
             }
-        }
-    }
-}
-
-/// Whether anything lies between a point and the light.
-struct Blocked<R: Real> {
-    distance: R,
-    blocked: R::Mask,
-}
-
-impl<R: Real> Visit<R> for Blocked<R> {
-    #[inline(always)]
-    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
-        valid & !R::zero().lt(t)
-    }
-
-    #[inline(always)]
-    fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
-        self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));
-    }
-}
-
-/// Remembers the crossings in between: at most four, a torus'.
-struct Met<R: Real> {
-    distance: R,
-    crossings: [(R, R, R::Mask); 4],
-    n: usize,
-}
-
-impl<R: Real> Visit<R> for Met<R> {
-    #[inline(always)]
-    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
-        if self.n < self.crossings.len() {
-            self.crossings[self.n] = (t, part, valid & R::zero().lt(t) & t.lt(self.distance));
-            self.n += 1;
         }
     }
 }

@@ -303,3 +303,12 @@ impl<L: Lane> Beams<L> {
         })
     }
 }
+
+/// Rays of a register, for each to go through the tree by itself.
+#[allow(clippy::large_enum_variant)] // it stays where it is made
+pub enum Rays<L: Lane> {
+    /// In the tree's units.
+    Ready(Beams<L>),
+    /// Origins and directions of a shorter format.
+    Shorter([[L::Elem; PADDING]; 3], [[L::Elem; PADDING]; 3]),
+}

@@ -8,6 +8,7 @@ mod beam;
 mod build;
 pub(super) mod node;
 mod split;
+mod together;
 mod walk;
 
 use super::batch::PADDING;
@@ -17,11 +18,12 @@ use super::span::stored;
 use crate::math::real::each3;
 use crate::math::{Elem, Lane, Mask};
 use beam::{Beam, Beams};
-pub use beam::{Spread, farthest};
-use node::{Box4, Child, Fit, Node};
+pub use beam::{Rays, Spread, farthest};
+use node::{Child, Fit, Node};
 use rayon::prelude::*;
 use split::Item;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use together::OneByOne;
 pub use walk::{Leaves, TEST};
 
 /// The tree.
@@ -229,60 +231,6 @@ impl Bvh {
         match beam {
             Some(beam) => walk::walk::<L::Boxes>(&self.nodes, &self.ids, &beam, t_max, leaves),
             None => 0,
-        }
-    }
-}
-
-/// Rays of a register, for each to go through the tree by itself.
-#[allow(clippy::large_enum_variant)] // it stays where it is made
-pub enum Rays<L: Lane> {
-    /// In the tree's units.
-    Ready(Beams<L>),
-    /// Origins and directions of a shorter format.
-    Shorter([[L::Elem; PADDING]; 3], [[L::Elem; PADDING]; 3]),
-}
-
-/// Leaves whose primitives a function tests one by one.
-struct OneByOne<L: Lane, C, F> {
-    most: u32,
-    cost: C,
-    test: F,
-    t_max: L,
-    alive: L::Mask,
-    /// Where rays run apart: each for itself.
-    slabs: Option<Slabs<L>>,
-    fit: Fit,
-}
-
-impl<L: Lane, C: Fn(u32) -> u32, F: FnMut(u32) -> L> Leaves for OneByOne<L, C, F> {
-    #[inline(always)]
-    fn test(&mut self, ids: &[u32]) -> f64 {
-        for id in ids {
-            self.t_max = (self.test)(*id);
-        }
-        farthest(self.t_max, self.alive)
-    }
-    #[inline(always)]
-    fn cost(&self, ids: &[u32]) -> u32 {
-        let mut sum = 0;
-        for id in ids {
-            sum += (self.cost)(*id);
-        }
-        sum
-    }
-    #[inline(always)]
-    fn most(&self) -> u32 {
-        self.most
-    }
-    #[inline(always)]
-    fn cost_of_boxes(&self, boxes: u32) -> u32 {
-        if self.slabs.is_some() { boxes.count_ones() } else { 0 }
-    }
-    #[inline(always)]
-    fn may_meet(&self, b: impl FnOnce() -> Box4) -> bool {
-        match &self.slabs {
-            Some(slabs) => (slabs.meet(&self.fit.grow(&b()), self.t_max) & self.alive).any(),
-            None => true,
         }
     }
 }
