@@ -3,6 +3,7 @@
 //! Shapes are placed twice: once for what they are numbered by, and again, in the order of their numbers, for good. What a
 //! shape's place is made of is far larger than what is kept of it, and placing is quicker than moving that through memory.
 
+use super::ball::Ball;
 use super::bounds::Bounds;
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
@@ -80,6 +81,8 @@ impl World {
             unbounded: Vec::new(),
             extremes: Vec::new(),
             flocks: Vec::new(),
+            balls: Vec::new(),
+            has_rings: false,
             bvh: Bvh::default(),
             materials: Vec::new(),
             patterns: PatternTable::default(),
@@ -94,6 +97,8 @@ impl World {
         let (order, keys) = world.in_order(&standing, &digests, &numbers, wanted, cancel)?;
         let bounded = world.lay_out(&standing, &order, &numbers, cancel)?;
         drop((order, standing));
+        world.has_rings = world.primitives.iter().any(|p| matches!(p.kind, Kind::Ring(_)));
+        world.balls = world.primitives.iter().map(|p| Ball::around(p, &world.maps)).collect();
         // Boxes are relative to the camera's place.
         let before = before.filter(|(old, _)| old.eye == world.eye);
         world.bvh = match before.and_then(|b| grafted(b, (&world, &keys), &bounded)) {

@@ -24,10 +24,17 @@ pub struct Candidates {
     pub ids: Vec<u32>,
     /// Whether bounded primitives are found through the tree.
     pub tree: bool,
+    /// How often in a row it came to that lately.
+    pub vain: u32,
 }
 
+/// So many searches in vain, and only each [`AGAIN`]th is made until one finds something.
+const VAIN: u32 = 16;
+const AGAIN: u32 = 8;
+
 impl Candidates {
-    /// Collects what `keep` and `keep_plane` don't exclude, for so many `rays`; of many, those that it pays to look for.
+    /// Collects what `keep` and `keep_plane` don't exclude, for so many `rays`; of many, those that it pays to look for. For none
+    /// nothing is looked for in the tree.
     #[inline(always)]
     pub fn gather(
         &mut self,
@@ -42,7 +49,8 @@ impl Candidates {
         let ids = &mut self.ids;
         self.tree = false;
         let tree = &mut self.tree;
-        let ended = world.bvh.gather(1 + rays / RAYS_A_NODE, keep, |id| {
+        let most = if rays == 0 { 0 } else { 1 + rays / RAYS_A_NODE };
+        let ended = world.bvh.gather(most, keep, |id| {
             *tree = ids.len() >= planes + LONGEST_LIST;
             if !*tree {
                 ids.push(id);
@@ -54,6 +62,21 @@ impl Candidates {
             self.ids.truncate(planes);
         }
         self.ids.sort_unstable();
+    }
+
+    /// As [`gather`](Candidates::gather), but where this found too much again and again it is mostly left to the tree at once: what
+    /// rays may meet is asked for many batches, one after another.
+    #[inline(always)]
+    pub fn gather_if_it_pays(
+        &mut self,
+        world: &World,
+        rays: usize,
+        keep: impl FnMut(&Bounds) -> bool,
+        keep_plane: impl FnMut([f64; 3], f64) -> bool,
+    ) {
+        let rays = if self.vain > VAIN && self.vain % AGAIN != 0 { 0 } else { rays };
+        self.gather(world, rays, keep, keep_plane);
+        self.vain = if self.tree { self.vain.wrapping_add(1) } else { 0 };
     }
 
     /// Whether nothing can be met.
@@ -91,7 +114,7 @@ pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &m
     let origins = origins.bounds();
     let beam = Beam { origins, axis, cos: least(cos) };
     let cone = beam.cone(margin);
-    out.gather(
+    out.gather_if_it_pays(
         world,
         rays.len,
         #[inline(always)]

@@ -1,12 +1,13 @@
 //! How much of a light arrives: shadow rays, and what transparent objects let through.
 
 use super::batch::PADDING;
-use super::bvh::{Leaves, Spread};
+use super::between::{Blocked, Met};
+use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
 use super::ray::Own;
 use super::shape::{Mesh, Visit};
-use super::span::{least, stored};
+use super::span::{least, spread, stored};
 use super::surface_pattern::PatternFrame;
 use super::touch::ButAtTheEnd;
 use super::way::Way;
@@ -50,11 +51,25 @@ pub struct ShadowRays<'w, L: Lane> {
 }
 
 impl<L: Lane> ShadowRays<'_, L> {
-    /// The lanes that start on surface `k` and surely don't meet it again.
+    /// Whether all lanes of `open` start on surface `k` and surely don't meet it again.
     #[inline(always)]
-    fn left_for_good(&self, world: &World, k: u32) -> L::Mask {
-        let never = world.primitive(k).kind.is_left_for_good();
-        L::Mask::splat(never) & self.source.same(L::splat(k as f64)) & self.outward.same(L::one())
+    fn left_for_good(&self, world: &World, k: u32, open: L::Mask) -> bool {
+        let leaves = self.source.same(L::splat(k as f64)) & self.outward.same(L::one());
+        // Mostly none does, and the primitive needn't be looked at.
+        leaves.any() && world.primitive(k).kind.is_left_for_good() && !(open & !leaves).any()
+    }
+
+    /// Whether all lanes of `open` surely miss surface `k`, and by far: told by the ball around it, before anything else of it is
+    /// looked at, for that may be anywhere in memory.
+    #[inline(always)]
+    fn pass_by(&self, world: &World, k: u32, open: L::Mask) -> bool {
+        match world.balls.get(k as usize) {
+            Some(ball) => {
+                let here = self.source.same(L::splat(k as f64));
+                !(open & (here | !ball.passed_by::<L, false>((self.o, self.l)))).any()
+            }
+            None => false,
+        }
     }
 
     /// Visits the crossings with surface `k`.
@@ -170,7 +185,7 @@ impl<L: Lane> Open<'_, L> {
     #[inline(always)]
     fn test_here(&mut self, world: &World, ids: &[u32], transparent: &mut Vec<u32>, recorder: &mut Recorder) {
         for &k in ids {
-            if !(self.mask & !self.rays.left_for_good(world, k)).any() {
+            if self.rays.left_for_good(world, k, self.mask) || self.rays.pass_by(world, k, self.mask) {
                 continue;
             }
             match world.constant_transmission(k) {
@@ -211,12 +226,17 @@ impl<L: Lane> Open<'_, L> {
         let before = self.mask;
         ways[*deep as usize].take::<L>(
             #[inline(always)]
-            |together| {
+            |together, most| {
+                let found = self.mask;
                 self.mask = before;
-                match together {
-                    true => self.together(world, transparent, recorder),
+                let cost = match together {
+                    true => self.together(world, transparent, recorder, most),
                     false => self.one_by_one(world, transparent, recorder),
+                };
+                if cost > most {
+                    self.mask = found;
                 }
+                cost
             },
         );
         // Each of the rays may have put the same aside.
@@ -226,23 +246,25 @@ impl<L: Lane> Open<'_, L> {
 
     /// All rays at once.
     #[inline(always)]
-    fn together(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+    fn together(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder, most: u32) -> u32 {
         L::vectorize(
             #[inline(always)]
             || {
                 let (rays, reach) = (self.rays, self.reach());
-                world.bvh.traverse(
-                    rays.o,
-                    rays.l,
+                world.bvh.traverse_within(
+                    most,
+                    (rays.o, rays.l),
                     reach,
+                    #[inline(always)]
+                    |k| world.cost_of_test(k, L::WIDTH),
                     #[inline(always)]
                     |k| {
                         self.test_here(world, &[k], transparent, recorder);
                         self.reach()
                     },
-                );
+                )
             },
-        );
+        )
     }
 
     /// How far each ray still has to be followed.
@@ -253,7 +275,7 @@ impl<L: Lane> Open<'_, L> {
 
     /// One ray after another.
     #[inline(always)]
-    fn one_by_one(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) {
+    fn one_by_one(&mut self, world: &World, transparent: &mut Vec<u32>, recorder: &mut Recorder) -> u32 {
         L::vectorize(
             #[inline(always)]
             || {
@@ -261,8 +283,9 @@ impl<L: Lane> Open<'_, L> {
                 let (source, part, outward) =
                     (stored(self.rays.source), stored(self.rays.part), stored(self.rays.outward));
                 let distance = stored(self.rays.distance);
+                let beams = world.bvh.rays::<L>(self.rays.o, self.rays.l);
                 let mut bits = self.mask.bits();
-                let mut rest = bits;
+                let (mut rest, mut cost) = (bits, 0);
                 while rest != 0 {
                     let i = rest.trailing_zeros() as usize % PADDING;
                     rest &= rest - 1;
@@ -278,27 +301,17 @@ impl<L: Lane> Open<'_, L> {
                         touched: self.rays.touched,
                     };
                     let open = Open { mask: Mask::splat(true), rays: &rays, blocker: None };
-                    let wide = ShadowRays::<L> {
-                        source: L::splat(source[i].to_f64()),
-                        part: L::splat(part[i].to_f64()),
-                        outward: L::splat(outward[i].to_f64()),
-                        o: each3!(&o, x => L::splat(x[i].to_f64())),
-                        l: each3!(&l, x => L::splat(x[i].to_f64())),
-                        distance: L::splat(distance[i].to_f64()),
-                        light: self.rays.light,
-                        touched: self.rays.touched,
-                    };
-                    let mut ray = InTree::<L> { world, open, wide: &wide, transparent, recorder };
-                    let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&l, x => x[i].to_f64()));
-                    world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, distance[i].to_f64(), &mut ray);
+                    let mut ray = InTree::<L> { world, open, wide: None, transparent, recorder };
+                    cost += world.bvh.walk_alone::<L>(&beams, i, distance[i].to_f64(), &mut ray);
                     if !ray.open.mask.any() {
                         bits &= !(1 << i);
                         self.blocker = ray.open.blocker;
                     }
                 }
                 self.mask = L::Mask::from_bits(bits);
+                cost
             },
-        );
+        )
     }
 }
 
@@ -306,8 +319,8 @@ impl<L: Lane> Open<'_, L> {
 struct InTree<'a, L: Lane> {
     world: &'a World,
     open: Open<'a, L::One>,
-    /// The same in every lane: one ray against many triangles.
-    wide: &'a ShadowRays<'a, L>,
+    /// The same in every lane: one ray against many triangles. Not before it meets some.
+    wide: Option<ShadowRays<'a, L>>,
     transparent: &'a mut Vec<u32>,
     recorder: &'a mut Recorder,
 }
@@ -325,6 +338,13 @@ impl<L: Lane> Leaves for InTree<'_, L> {
         }
         if self.open.mask.any() { least(self.open.rays.distance) } else { -1.0 }
     }
+    #[inline(always)]
+    fn cost(&self, ids: &[u32]) -> u32 {
+        match ids {
+            [id] => self.world.cost_of_test(*id, 1),
+            _ => TEST * ids.len().div_ceil(L::WIDTH) as u32,
+        }
+    }
 }
 
 impl<L: Lane> InTree<'_, L> {
@@ -332,12 +352,25 @@ impl<L: Lane> InTree<'_, L> {
     #[inline(always)]
     fn stops_light(&self, ids: &[u32]) -> bool {
         let opaque = self.world.constant_transmission(ids[0]) == Some([0.0; 3]);
-        opaque && self.wide.touched.is_empty()
+        opaque && self.open.rays.touched.is_empty()
     }
 
     #[inline(always)]
     fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
-        let rays = self.wide;
+        if self.wide.is_none() {
+            let ray = self.open.rays;
+            self.wide = Some(ShadowRays {
+                source: spread::<L>(ray.source),
+                part: spread::<L>(ray.part),
+                outward: spread::<L>(ray.outward),
+                o: each3!(ray.o, x => spread::<L>(x)),
+                l: each3!(ray.l, x => spread::<L>(x)),
+                distance: spread::<L>(ray.distance),
+                light: ray.light,
+                touched: ray.touched,
+            });
+        }
+        let Some(rays) = &self.wide else { return };
         let mut met = Blocked { distance: rays.distance, blocked: L::Mask::splat(false) };
         mesh.crossings_of_one(ids, (rays.o, rays.l), (rays.source, rays.part, rays.outward), &mut met);
         let blocked = met.blocked.bits();
@@ -347,41 +380,6 @@ impl<L: Lane> InTree<'_, L> {
             if let (Some(id), true) = (self.open.blocker, self.recorder.is_on()) {
                 self.recorder.shaded(id);
             }
-        }
-    }
-}
-
-/// Whether anything lies between a point and the light.
-struct Blocked<R: Real> {
-    distance: R,
-    blocked: R::Mask,
-}
-
-impl<R: Real> Visit<R> for Blocked<R> {
-    #[inline(always)]
-    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
-        valid & !R::zero().lt(t)
-    }
-
-    #[inline(always)]
-    fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
-        self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));
-    }
-}
-
-/// Remembers the crossings in between: at most four, a torus'.
-struct Met<R: Real> {
-    distance: R,
-    crossings: [(R, R, R::Mask); 4],
-    n: usize,
-}
-
-impl<R: Real> Visit<R> for Met<R> {
-    #[inline(always)]
-    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
-        if self.n < self.crossings.len() {
-            self.crossings[self.n] = (t, part, valid & R::zero().lt(t) & t.lt(self.distance));
-            self.n += 1;
         }
     }
 }

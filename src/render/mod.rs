@@ -10,6 +10,7 @@ mod assemble;
 mod ball;
 pub mod batch;
 mod belt;
+mod between;
 pub mod bounds;
 pub mod bvh;
 pub mod camera;

@@ -1,11 +1,11 @@
 //! What each ray of a batch meets first.
 
 use super::batch::{HitColumns, NONE, PADDING, RayBatch, load3};
-use super::bvh::{Leaves, Spread};
+use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::{Mesh, Visit};
-use super::span::{least, stored};
+use super::span::{least, spread, stored};
 use super::way::Way;
 use super::world::World;
 use crate::math::real::each3;
@@ -110,8 +110,9 @@ impl<L: Lane> Nearest<L> {
         let outward = L::one().same(start.outward);
         for &k in ids {
             let here = start.primitive.same(L::splat(k as f64));
-            let left = here & outward & L::Mask::splat(world.primitive(k).kind.is_left_for_good());
-            if !(start.live & !left).any() {
+            let leaves = here & outward;
+            // Mostly none does, and the primitive needn't be looked at.
+            if leaves.any() && world.primitive(k).kind.is_left_for_good() && !(start.live & !leaves).any() {
                 continue;
             }
             let own = Own::of(here, start.part, outward);
@@ -125,44 +126,55 @@ impl<L: Lane> Nearest<L> {
         let before = *self;
         way.take::<L>(
             #[inline(always)]
-            |together| {
+            |together, most| {
+                let found = *self;
                 *self = before;
-                if together { self.together(world, start) } else { self.one_by_one(world, start) }
+                let cost = match together {
+                    true => self.together(world, start, most),
+                    false => self.one_by_one(world, start),
+                };
+                if cost > most {
+                    *self = found;
+                }
+                cost
             },
         );
     }
 
     /// All rays at once.
     #[inline(always)]
-    fn together(&mut self, world: &World, start: &Start<L>) {
+    fn together(&mut self, world: &World, start: &Start<L>, most: u32) -> u32 {
         L::vectorize(
             #[inline(always)]
             || {
                 let t_max = L::select(start.live, self.t, -L::one());
-                world.bvh.traverse(
-                    start.o,
-                    start.d,
+                world.bvh.traverse_within(
+                    most,
+                    (start.o, start.d),
                     t_max,
+                    #[inline(always)]
+                    |k| world.cost_of_test(k, L::WIDTH),
                     #[inline(always)]
                     |k| {
                         self.test_all(world, &[k], start);
                         L::select(start.live, self.t, -L::one())
                     },
-                );
+                )
             },
-        );
+        )
     }
 
     /// One ray after another.
     #[inline(always)]
-    fn one_by_one(&mut self, world: &World, start: &Start<L>) {
+    fn one_by_one(&mut self, world: &World, start: &Start<L>) -> u32 {
         L::vectorize(
             #[inline(always)]
             || {
                 let (o, d) = (each3!(start.o, x => stored(x)), each3!(start.d, x => stored(x)));
                 let from = [stored(start.primitive), stored(start.part), stored(start.outward)];
                 let (mut t, mut id, mut part) = (stored(self.t), stored(self.id), stored(self.part));
-                let mut rest = start.live.bits();
+                let rays = world.bvh.rays::<L>(start.o, start.d);
+                let (mut rest, mut cost) = (start.live.bits(), 0);
                 while rest != 0 {
                     let i = rest.trailing_zeros() as usize % PADDING;
                     rest &= rest - 1;
@@ -176,24 +188,16 @@ impl<L: Lane> Nearest<L> {
                         live: Mask::splat(true),
                     };
                     let best = Nearest { t: one(&t), id: one(&id), part: one(&part), current: L::One::zero() };
-                    let spread = Spread::of_one(each3!(&o, x => x[i].to_f64()), each3!(&d, x => x[i].to_f64()));
-                    let wide = Start::<L> {
-                        o: each3!(&o, x => L::splat(x[i].to_f64())),
-                        d: each3!(&d, x => L::splat(x[i].to_f64())),
-                        primitive: L::splat(from[0][i].to_f64()),
-                        part: L::splat(from[1][i].to_f64()),
-                        outward: L::splat(from[2][i].to_f64()),
-                        live: Mask::splat(true),
-                    };
-                    let mut ray = InTree::<L> { world, start, best, wide };
-                    world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t[i].to_f64(), &mut ray);
+                    let mut ray = InTree::<L> { world, start, best, wide: None };
+                    cost += world.bvh.walk_alone::<L>(&rays, i, t[i].to_f64(), &mut ray);
                     ray.best.t.store(&mut t[i..]);
                     ray.best.id.store(&mut id[i..]);
                     ray.best.part.store(&mut part[i..]);
                 }
                 (self.t, self.id, self.part) = (L::load(&t), L::load(&id), L::load(&part));
+                cost
             },
-        );
+        )
     }
 }
 
@@ -202,8 +206,8 @@ struct InTree<'w, L: Lane> {
     world: &'w World,
     start: Start<L::One>,
     best: Nearest<L::One>,
-    /// The same in every lane: one ray against many triangles.
-    wide: Start<L>,
+    /// The same in every lane: one ray against many triangles. Not before it meets some.
+    wide: Option<Start<L>>,
 }
 
 impl<L: Lane> Leaves for InTree<'_, L> {
@@ -219,12 +223,30 @@ impl<L: Lane> Leaves for InTree<'_, L> {
         }
         least(self.best.t)
     }
+    #[inline(always)]
+    fn cost(&self, ids: &[u32]) -> u32 {
+        match ids {
+            [id] => self.world.cost_of_test(*id, 1),
+            _ => TEST * ids.len().div_ceil(L::WIDTH) as u32,
+        }
+    }
 }
 
 impl<L: Lane> InTree<'_, L> {
     #[inline(always)]
     fn test_triangles(&mut self, mesh: &Mesh, ids: &[u32]) {
-        let ray = &self.wide;
+        if self.wide.is_none() {
+            let ray = &self.start;
+            self.wide = Some(Start {
+                o: each3!(ray.o, x => spread::<L>(x)),
+                d: each3!(ray.d, x => spread::<L>(x)),
+                primitive: spread::<L>(ray.primitive),
+                part: spread::<L>(ray.part),
+                outward: spread::<L>(ray.outward),
+                live: Mask::splat(true),
+            });
+        }
+        let Some(ray) = &self.wide else { return };
         let mut met = Met { t: L::zero(), valid: L::Mask::splat(false) };
         mesh.crossings_of_one(ids, (ray.o, ray.d), (ray.primitive, ray.part, ray.outward), &mut met);
         let mut rest = (met.valid & L::zero().lt(met.t) & met.t.le(L::splat(least(self.best.t)))).bits();

@@ -29,8 +29,8 @@ impl Search {
     /// into their boxes, at the boxes' faces, edges and corners, and along the axes.
     pub fn through(world: &World, rays: u64, lot: u64) -> Search {
         let planes: Vec<u32> = world.unbounded.iter().map(|p| p.id).collect();
-        let by_tree = Candidates { ids: planes, tree: true };
-        let by_list = Candidates { ids: (0..world.surface_count()).collect(), tree: false };
+        let by_tree = Candidates { ids: planes, tree: true, vain: 0 };
+        let by_list = Candidates { ids: (0..world.surface_count()).collect(), tree: false, vain: 0 };
         // Their own, for the tree's are a little wider: a ray is to run along the very face.
         let boxes: Vec<Bounds> = world.bvh.leaves().map(|(id, b)| box_of(world, id).unwrap_or(b)).collect();
         let mut search = Search::default();

@@ -198,7 +198,7 @@ impl<E: Elem> RunOfHits<'_, E> {
         occluders.resize_with(self.world.lights.len(), Candidates::default);
         for (light, occluders) in self.world.lights.iter().zip(occluders) {
             let shaft = Shaft::new(points, light.at, margin);
-            occluders.gather(
+            occluders.gather_if_it_pays(
                 self.world,
                 rays,
                 #[inline(always)]

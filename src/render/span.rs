@@ -51,6 +51,12 @@ pub fn least<L: Lane>(x: L) -> f64 {
     least
 }
 
+/// One number in every place of a register. A function and not a closure: those aren't always inlined into what is compiled for lanes.
+#[inline(always)]
+pub fn spread<L: Lane>(x: L::One) -> L {
+    L::splat(least(x))
+}
+
 /// The sum of a register's numbers.
 #[inline(always)]
 pub fn total<L: Lane>(x: L) -> f64 {

@@ -4,9 +4,9 @@
 //! never changes a pixel: where two surfaces coincide exactly, the same one is always in front, and an opaque one before one
 //! that light goes through.
 
-use super::ball::passing_by;
+use super::ball::Ball;
 use super::bounds::{Bounds, larger};
-use super::bvh::Bvh;
+use super::bvh::{Bvh, TEST};
 use super::camera::CameraFrame;
 use super::confine::Confined;
 use super::frame::LinearMap;
@@ -21,9 +21,16 @@ use crate::math::{Affine, Dd, Mask, Real};
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{MaterialId, NodeId};
 
+/// What a torus' kernel costs a ray, in tests of the tree's nodes; roughly.
+const RING: u32 = 60;
+
 /// The scene as the tracer sees it.
 pub struct World {
     pub(super) primitives: Vec<Primitive>,
+    /// Around each of them.
+    pub(super) balls: Vec<Ball>,
+    /// Whether any is a torus.
+    pub(super) has_rings: bool,
     /// Node and material of each primitive in the scene.
     pub(super) origins: Vec<(NodeId, MaterialId)>,
     pub(super) maps: Vec<LinearMap>,
@@ -199,8 +206,8 @@ impl World {
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
-        if let Some(primitive) = self.primitives.get(id as usize) {
-            let mut met = !passing_by::<R, AT_EYE>(primitive, &self.maps, (o, d));
+        if let Some(ball) = self.balls.get(id as usize) {
+            let mut met = !ball.passed_by::<R, AT_EYE>((o, d));
             if let Some(own) = &own {
                 met = met | own.here; // what went in must come out, wherever rounding puts the start
             }
@@ -208,10 +215,21 @@ impl World {
                 return;
             }
             let visit = &mut Confined::new(met, self.confines(id), (o, d), visit);
-            return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
+            return self.primitives[id as usize].crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
         }
         let (mesh, k) = self.triangle(id);
         mesh.crossing(k, (o, d), own, visit);
+    }
+
+    /// What testing `rays` side by side against surface `id` costs, in tests of the tree's nodes.
+    #[inline(always)]
+    pub(super) fn cost_of_test(&self, id: u32, rays: usize) -> u32 {
+        if self.has_rings
+            && let Some(Primitive { kind: Kind::Ring(_), .. }) = self.primitives.get(id as usize)
+        {
+            return RING * rays as u32; // one after another
+        }
+        TEST
     }
 
     /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.
@@ -289,6 +307,7 @@ impl World {
             + self.meshes.iter().map(|m| m.memory_bytes()).sum::<usize>()
             + self.spaces.len() * size_of::<MadeSpace>()
             + self.flocks.len() * size_of::<u32>()
+            + self.balls.len() * size_of::<Ball>()
             + self.unbounded.len() * size_of::<Unbounded>()
             + self.extremes.len() * size_of::<(u32, Bounds)>()
             + self.lights.iter().map(|l| size_of::<PointLight>() + size_of_val(&*l.touched)).sum::<usize>()

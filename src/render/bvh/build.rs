@@ -94,6 +94,13 @@ impl Builder<'_> {
     /// most often.
     fn parts(&self, items: &mut [Item], whole: Part, level: usize) -> [Option<Part>; WIDE] {
         let mut parts = [None; WIDE];
+        if self.most == 1 && items.len() <= WIDE {
+            // Each becomes a leaf, whichever way they are split.
+            for ((part, item), first) in parts.iter_mut().zip(items.chunks(1)).zip(whole.first..) {
+                *part = Some(Part::over(item, first));
+            }
+            return parts;
+        }
         parts[0] = Some(whole);
         let free = level < FREE_LEVELS;
         // What comes to lie directly above the leaves is split evenly, into no more parts than it takes: half-empty nodes cost as

@@ -4,20 +4,27 @@
 //! through nearest box first (`walk`). The same primitives give the same tree, and no picture depends on it: a box is
 //! passed over only where every ray surely misses what is in it.
 
+mod beam;
 mod build;
 pub(super) mod node;
 mod split;
+mod together;
 mod walk;
 
+use super::batch::PADDING;
 use super::bounds::Bounds;
 use super::slabs::Slabs;
-use crate::math::{Lane, Mask};
-use node::{Box4, Child, Fit, Node};
+use super::span::stored;
+use crate::math::real::each3;
+use crate::math::{Elem, Lane, Mask};
+use beam::{Beam, Beams};
+pub use beam::{Rays, Spread, farthest};
+use node::{Child, Fit, Node};
 use rayon::prelude::*;
 use split::Item;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use walk::Beam;
-pub use walk::{Leaves, Spread, farthest};
+use together::OneByOne;
+pub use walk::{Leaves, TEST};
 
 /// The tree.
 #[derive(Clone, Debug)]
@@ -157,6 +164,20 @@ impl Bvh {
     /// `test` gives the lanes' new `t_max`; a lane is finished when that is not positive, and one that begins so has no ray.
     #[inline(always)]
     pub fn traverse<L: Lane>(&self, o: [L; 3], d: [L; 3], t_max: L, test: impl FnMut(u32) -> L) {
+        self.traverse_within(u32::MAX, (o, d), t_max, |_| TEST, test);
+    }
+
+    /// As [`traverse`](Bvh::traverse), but given up where it costs more than `most`. Gives what it cost, in node's tests; `cost` says
+    /// that of `test`.
+    #[inline(always)]
+    pub fn traverse_within<L: Lane>(
+        &self,
+        most: u32,
+        (o, d): ([L; 3], [L; 3]),
+        t_max: L,
+        cost: impl Fn(u32) -> u32,
+        test: impl FnMut(u32) -> L,
+    ) -> u32 {
         let alive = L::zero().lt(t_max);
         if alive.any() {
             let spread = Spread::of(o, d, alive);
@@ -165,47 +186,51 @@ impl Bvh {
                 || Slabs::new(o, d),
             );
             let t = farthest(t_max, alive);
-            let mut leaves = OneByOne { test, t_max, alive, slabs, fit: self.fit };
-            self.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t, &mut leaves);
+            let mut leaves = OneByOne { most, cost, test, t_max, alive, slabs, fit: self.fit };
+            return self.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, t, &mut leaves);
         }
+        0
     }
 
     /// Has `leaves` test every leaf whose box one of the rays of `spread` meets before `t_max`, nearer boxes first. `u` is
-    /// the unit roundoff of the kernels that it calls.
+    /// the unit roundoff of the kernels that it calls. Gives what it cost, in node's tests.
     #[inline(always)]
-    pub fn walk<W: Lane<Elem = f32>>(&self, spread: &Spread, u: f64, t_max: f64, leaves: &mut impl Leaves) {
+    pub fn walk<W: Lane<Elem = f32>>(&self, spread: &Spread, u: f64, t_max: f64, leaves: &mut impl Leaves) -> u32 {
         if self.nodes.is_empty() {
-            return;
+            return 0;
         }
-        if let Some(beam) = Beam::new(&self.fit, &self.bounds, spread, u) {
-            walk::walk::<W>(&self.nodes, &self.ids, &beam, t_max, leaves);
+        match Beam::new(&self.fit, &self.bounds, spread, u) {
+            Some(beam) => walk::walk::<W>(&self.nodes, &self.ids, &beam, t_max, leaves),
+            None => 0,
         }
     }
-}
 
-/// Leaves whose primitives a function tests one by one.
-struct OneByOne<L: Lane, F> {
-    test: F,
-    t_max: L,
-    alive: L::Mask,
-    /// Where rays run apart: each for itself.
-    slabs: Option<Slabs<L>>,
-    fit: Fit,
-}
-
-impl<L: Lane, F: FnMut(u32) -> L> Leaves for OneByOne<L, F> {
+    /// Rays that are to go through the tree one after another.
     #[inline(always)]
-    fn test(&mut self, ids: &[u32]) -> f64 {
-        for id in ids {
-            self.t_max = (self.test)(*id);
+    pub fn rays<L: Lane>(&self, o: [L; 3], d: [L; 3]) -> Rays<L> {
+        // Slack is for roundings of `f64`: what has others gets a beam ray by ray.
+        match L::UNIT_ROUNDOFF > f64::EPSILON {
+            true => Rays::Shorter(each3!(o, x => stored(x)), each3!(d, x => stored(x))),
+            false => Rays::Ready(Beams::new(&self.fit, &self.bounds, (o, d))),
         }
-        farthest(self.t_max, self.alive)
     }
+
+    /// [`walk`](Bvh::walk) of ray number `k`.
     #[inline(always)]
-    fn may_meet(&self, b: impl FnOnce() -> Box4) -> bool {
-        match &self.slabs {
-            Some(slabs) => (slabs.meet(&self.fit.grow(&b()), self.t_max) & self.alive).any(),
-            None => true,
+    pub fn walk_alone<L: Lane>(&self, rays: &Rays<L>, k: usize, t_max: f64, leaves: &mut impl Leaves) -> u32 {
+        if self.nodes.is_empty() {
+            return 0;
+        }
+        let beam = match rays {
+            Rays::Ready(beams) => beams.get(&self.fit, k),
+            Rays::Shorter(o, d) => {
+                let of = |v: &[[L::Elem; PADDING]; 3]| each3!(v, x => x[k % PADDING].to_f64());
+                Beam::new(&self.fit, &self.bounds, &Spread::of_one(of(o), of(d)), L::UNIT_ROUNDOFF)
+            }
+        };
+        match beam {
+            Some(beam) => walk::walk::<L::Boxes>(&self.nodes, &self.ids, &beam, t_max, leaves),
+            None => 0,
         }
     }
 }

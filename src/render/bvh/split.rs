@@ -66,25 +66,30 @@ fn half_area(b: &Box4, unit: f32) -> f32 {
 
 /// Bins a split is chosen from: more change the tree little (Wald 2007, section 3).
 const BINS: usize = 16;
+/// The same of few items.
+const FEW_BINS: usize = 8;
+/// How many are few.
+const FEW: usize = 32;
 
 /// Maps centres to bins: x to ⌊(x − lo)·scale⌋, by adding a number so large that the sum has no room for a fraction.
 #[derive(Clone, Copy)]
-struct Bins {
+struct Bins<const BINS: usize> {
     lo: [f32; 4],
     scale: [f32; 4],
 }
 
 /// From 2^23 on, numbers of `f32` are whole.
 const WHOLE: f32 = (1 << 23) as f32;
-/// The last bin's upper end, less what rounding could add; half a bin down, for the sum rounds to the nearest.
-const SPAN: f32 = BINS as f32 - 1.0;
 
-impl Bins {
-    fn new(centres: &Box4) -> Bins {
+impl<const BINS: usize> Bins<BINS> {
+    /// The last bin's upper end, less what rounding could add; half a bin down, for the sum rounds to the nearest.
+    const SPAN: f32 = BINS as f32 - 1.0;
+
+    fn new(centres: &Box4) -> Bins<BINS> {
         let mut bins = Bins { lo: [0.0; 4], scale: [0.0; 4] };
         for i in 0..3 {
             let extent = centres.hi[i] - centres.lo[i];
-            let scale = SPAN / extent;
+            let scale = Self::SPAN / extent;
             if extent > 0.0 && extent.is_finite() && scale.is_finite() {
                 (bins.lo[i], bins.scale[i]) = (centres.lo[i], scale);
             }
@@ -104,7 +109,14 @@ impl Bins {
 
 /// Parts `items`, at least two, by the cheapest of the binned planes, or halves them where no plane parts them.
 pub fn split(items: &mut [Item], part: &Part) -> (Part, Part) {
-    let bins = Bins::new(&part.centres);
+    match items.len() <= FEW {
+        true => split_over::<FEW_BINS>(items, part),
+        false => split_over::<BINS>(items, part),
+    }
+}
+
+fn split_over<const BINS: usize>(items: &mut [Item], part: &Part) -> (Part, Part) {
+    let bins = Bins::<BINS>::new(&part.centres);
     let mut boxes = [[Box4::EMPTY; BINS]; 3];
     let mut counts = [[0u32; BINS]; 3];
     for item in items.iter() {

@@ -131,7 +131,11 @@ impl Primitive {
     ) -> Surface<R> {
         if let Kind::Triangle(i) = self.kind {
             let tri = &tables.triangles[i as usize];
-            let shading = tri.shading.map(|s| each3!(s, n => splat3(n)));
+            // No `Option::map`: its closure may be compiled without the lanes' instructions.
+            let mut shading = None;
+            if let Some(s) = tri.shading {
+                shading = Some(each3!(s, n => splat3(n)));
+            }
             return triangle::surface(Sides { v: each3!(tri.v, v => splat3(v)), n: splat3(tri.n), shading }, o, d);
         }
         let p = self.frame.localize::<R, AT_EYE>(tables.maps, o, d).at(t);
