@@ -30,7 +30,7 @@ const SLOW: f64 = 0.7;
 const STUCK: f64 = 0.9;
 
 /// So many times.
-const FAR: f64 = 1.0;
+const FAR: f64 = 32.0;
 
 /// What looks at a pixel came to.
 pub struct Looked {
