@@ -193,12 +193,14 @@ impl<'c> Study<'c> {
                     }
                     sheet.tests.push(ahead);
                 }
-                if sheet.tests.is_empty() && factor == [0.0; 3] {
+                if sheet.tests.is_empty() && factor == [0.0; 3] && !sheet.veil {
                     return fin(self, p, [[0.0; 2]; 3]);
                 }
                 blocks.push((sheet, factor));
             }
         }
+        // What is dark all the same needn't know what veils hide.
+        blocks.sort_by_key(|(sheet, _)| sheet.veil);
         self.past(p, &blocks, [1.0; 3], fin)
     }
 
@@ -208,6 +210,9 @@ impl<'c> Study<'c> {
             return fin(self, p, seen.map(|s| [s; 2]));
         };
         self.split_all(p, &sheet.tests, &mut |study, q, met| {
+            if met && sheet.veil {
+                return fin(study, q, [[0.0, 1.0]; 3]);
+            }
             let left = if met { three!(c => seen[c] * factor[c]) } else { seen };
             match left == [0.0; 3] {
                 true => fin(study, q, [[0.0; 2]; 3]),

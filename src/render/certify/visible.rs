@@ -55,6 +55,9 @@ impl<'c> Study<'c> {
             return self.unknown(p);
         }
         self.split_all(p, &sheet.tests, &mut |study, q, met| {
+            if met && sheet.veil {
+                return study.unknown(q);
+            }
             if met {
                 hits.met.push(next);
             }

@@ -146,3 +146,21 @@ fn every_shape() -> Scene {
     b.light(v(-40.0, 30.0, -20.0), [0.2, 0.2, 0.4]);
     b.0
 }
+
+/// Rings, which aren't followed, over a floor: what passes them by is known.
+fn rings() -> Scene {
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
+    b.shape(
+        Shape::Plane { through: v(0.0, -3.0, 0.0), normal: DVec3::Y },
+        Look { color: PatternKind::Checker { a: x, b: y, size: 4.0 }, specular: 0.0, reflect: 0.3, transmit: 0.0 },
+    );
+    let ring = |at: DVec3, axis: DVec3, r: f64| Shape::Torus { at, r, tube: 0.4 * r, axis };
+    b.shape(ring(v(0.0, 0.0, -20.0), v(0.1, 0.2, 1.0), 2.0), plain([0.8, 0.3, 0.2]));
+    b.shape(ring(v(4.0, -2.0, -25.0), DVec3::Y, 1.5), plain([0.2, 0.3, 0.8]));
+    let turn = Affine::translation(v(-4.0, -1.0, -22.0)).compose(&Affine::scaling(v(1.0, 0.5, 1.7)));
+    b.turned(ring(DVec3::ZERO, v(1.0, 1.0, 0.0), 1.0), plain([0.5; 3]), turn);
+    b.shape(Shape::Sphere { at: v(0.5, 0.2, -16.0), r: 0.8 }, plain([0.9, 0.8, 0.1]));
+    b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
+    b.0
+}

@@ -131,6 +131,12 @@ fn weakened_certificates_are_noticed() {
 }
 
 #[test]
+fn what_passes_a_ring_by_is_known() {
+    let found = studied(&rings(), (160, 90), 0..1_500, Weakened::No);
+    assert_eq!((found.outside, found.means), (0, 0), "{found:?}");
+}
+
+#[test]
 fn what_isnt_covered_is_unknown_within_its_range() {
     let mut b = Builder::new();
     b.shape(Shape::Torus { at: v(0.0, 0.0, -20.0), r: 2.0, tube: 0.5, axis: DVec3::Z }, plain([0.5; 3]));
