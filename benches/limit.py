@@ -4,8 +4,8 @@ benches/limit.py` prints a table.
     CARGO_PROFILE_RELEASE_DEBUG=line-tables-only cargo build --release --target-dir target/limit
     python3 benches/limit.py [--rtdsl target/limit/release/rtdsl]
 
-Needs valgrind and binutils. Callgrind counts how often each instruction runs with 1 and with 16 rays a pixel; the difference is
-the tracing of 15. The disassembly says what each instruction is and on how many numbers it works, the debug information
+Needs valgrind and binutils. Callgrind counts how often each instruction runs with 1 and with 4 rays a pixel; the difference is
+the tracing of 3. The disassembly says what each instruction is and on how many numbers it works, the debug information
 from which file of src/render it was inlined: that is its phase. Valgrind knows AVX2 and not AVX-512, so the numbers are
 those of four rays at a time; the count of operations is all but the same with eight. Operations that a mask throws away count
 as well: they take their time.
@@ -19,7 +19,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-WIDTH, HEIGHT, SIDE = 160, 90, 4
+WIDTH, HEIGHT, SIDE = 1280, 720, 2
 # Which file of src/render belongs to which phase; what isn't here (shapes, lanes) belongs to the phase that it was inlined into.
 PHASES = {
     'tile': 'camera rays and sums', 'camera': 'camera rays and sums',

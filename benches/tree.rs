@@ -3,15 +3,17 @@
 //! leaves mesh and rays there for `benches/peers/embree.cpp`, which measures the same rays in Embree. No thresholds; figures
 //! of one run compare only with each other, for machines drift.
 
-use rtdsl::math::best::{InLanes, in_widest_lanes};
+use rtdsl::math::best::{InLanes, in_widest_lanes, in_widest_lanes_of_f32};
 use rtdsl::math::hash::KeyedHash;
 use rtdsl::math::{Affine, Elem, Lane, Mask, Real};
 use rtdsl::render::bounds::Bounds;
 use rtdsl::render::bvh::{Bvh, Leaves, Spread};
 use rtdsl::render::frame::Frame;
 use rtdsl::render::shape::primitive::Tables;
-use rtdsl::render::shape::{Kind, Primitive, TriangleData, Visit};
+use rtdsl::render::shape::{self, Kind, Primitive, Visit};
+use rtdsl::scene::MeshData;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Cells along an edge of the cube that the mesh is made of: 6·2·289² triangles.
@@ -80,10 +82,10 @@ impl Mesh {
     }
 }
 
-/// What rays are traced through.
+/// What rays are traced through: a mesh, or balls.
 struct Scene {
-    primitives: Vec<Primitive>,
-    triangles: Vec<TriangleData>,
+    mesh: Option<shape::Mesh>,
+    balls: Vec<Primitive>,
     boxes: Vec<(u32, Bounds)>,
 }
 
@@ -94,40 +96,35 @@ struct Ray {
     t_max: f64,
 }
 
-fn frame(at: [f64; 3]) -> Frame {
+fn shifted(by: [f64; 3]) -> Affine {
     let mut map = Affine::IDENTITY;
-    for (to, x) in map.shift.iter_mut().zip(at) {
-        *to = rtdsl::math::Dd::new(x);
-    }
-    Frame::new(&map, |_| 0)
+    map.shift = by.map(rtdsl::math::Dd::new);
+    map
+}
+
+fn frame(at: [f64; 3]) -> Frame {
+    Frame::new(&shifted(at), |_| 0)
 }
 
 impl Scene {
     fn of(mesh: &Mesh) -> Scene {
-        let mut scene = Scene { primitives: Vec::new(), triangles: Vec::new(), boxes: Vec::new() };
-        for (face, i) in mesh.faces.iter().zip(0..) {
-            let v = face.map(|k| {
-                let p = mesh.vertices[k as usize];
-                [0, 1, 2].map(|c| p[c] as f64 - EYE[c])
-            });
-            scene.triangles.push(TriangleData { v, n: [0.0, 0.0, 1.0], shading: None });
-            let kind = Kind::Triangle(i);
-            scene.primitives.push(Primitive { kind, frame: frame([0.0; 3]), material: 0, space: Primitive::NO_SPACE });
-            scene.boxes.push((i, Bounds::of_points(v)));
-        }
-        scene
+        let points = mesh.vertices.iter().map(|v| v.map(f64::from)).collect();
+        let data = Arc::new(MeshData::new(points, mesh.faces.clone()));
+        let placed = shape::Mesh::new(&data, false, &shifted(EYE.map(|x| -x)), (0, 0));
+        let boxes = (0..placed.len() as u32).map(|k| (k, Bounds::of_points(placed.corners(k)))).collect();
+        Scene { mesh: Some(placed), balls: Vec::new(), boxes }
     }
 
     /// `n` balls in a room of 40 × 6 × 40, as large as leaves the room as full for every `n`.
     fn balls(n: usize) -> Scene {
-        let mut scene = Scene { primitives: Vec::new(), triangles: Vec::new(), boxes: Vec::new() };
+        let mut scene = Scene { mesh: None, balls: Vec::new(), boxes: Vec::new() };
         let size = rtdsl::math::fun::pow(1e5 / n as f64, 1.0 / 3.0);
         for i in 0..n as u64 {
             let at = [40.0 * random(i, 1) - 20.0, 6.0 * random(i, 2), 40.0 * random(i, 3) - 20.0];
             let at = [0, 1, 2].map(|c| at[c] - [0.0, 14.0, 40.0][c]);
             let r = (0.05 + 0.07 * random(i, 4)) * size;
             let kind = Kind::Sphere(r);
-            scene.primitives.push(Primitive { kind, frame: frame(at), material: 0, space: Primitive::NO_SPACE });
+            scene.balls.push(Primitive { kind, frame: frame(at), material: 0, space: Primitive::NO_SPACE });
             scene.boxes.push((i as u32, Bounds::around(at, [r; 3])));
         }
         scene
@@ -150,10 +147,18 @@ impl InLanes for Trace<'_> {
         let mut hits = 0;
         if !together {
             for ray in rays {
-                let mut nearest = Nearest { scene, o: ray.o, d: ray.d, t: ray.t_max, id: NONE, current: 0.0 };
                 let spread = Spread::of_one(ray.o, ray.d);
-                tree.walk::<L::Boxes>(&spread, <f64 as Real>::UNIT_ROUNDOFF, ray.t_max, &mut nearest);
-                hits += (nearest.id != NONE) as usize;
+                let one = Nearest {
+                    scene,
+                    o: ray.o.map(L::One::splat),
+                    d: ray.d.map(L::One::splat),
+                    t: L::One::splat(ray.t_max),
+                    id: L::One::splat(NONE),
+                    current: L::One::zero(),
+                };
+                let mut search = Alone::<L> { scene, o: ray.o.map(L::splat), d: ray.d.map(L::splat), one };
+                tree.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, ray.t_max, &mut search);
+                hits += search.one.id.lt(L::One::splat(NONE)).any() as usize;
             }
             return hits;
         }
@@ -203,11 +208,15 @@ impl<L: Lane> Nearest<'_, L> {
     #[inline(always)]
     fn test_one(&mut self, id: u32) {
         self.current = L::splat(id as f64);
-        let tables = Tables { maps: &[], triangles: &self.scene.triangles };
         let (o, d) = (self.o, self.d);
-        self.scene.primitives[id as usize].crossings::<L, false>(tables, o, d, None, self);
+        match &self.scene.mesh {
+            Some(mesh) => mesh.crossing(id, (o, d), None, self),
+            None => self.scene.balls[id as usize].crossings::<L, false>(NO_TABLES, o, d, None, self),
+        }
     }
 }
+
+const NO_TABLES: Tables<'static> = Tables { maps: &[], triangles: &[] };
 
 impl<L: Lane> Visit<L> for Nearest<'_, L> {
     #[inline(always)]
@@ -219,13 +228,62 @@ impl<L: Lane> Visit<L> for Nearest<'_, L> {
     }
 }
 
-impl Leaves for Nearest<'_, f64> {
+/// One ray on its way: as many triangles at once as a register holds, or one ball.
+struct Alone<'s, L: Lane> {
+    scene: &'s Scene,
+    o: [L; 3],
+    d: [L; 3],
+    one: Nearest<'s, L::One>,
+}
+
+/// What a ray meets of triangles: each lane of its own.
+struct Met<L: Lane> {
+    t: L,
+    valid: L::Mask,
+}
+
+impl<L: Lane> Visit<L> for Met<L> {
+    #[inline(always)]
+    fn crossing(&mut self, t: L, _: L, valid: L::Mask) {
+        (self.t, self.valid) = (t, valid);
+    }
+}
+
+impl<L: Lane> Leaves for Alone<'_, L> {
     #[inline(always)]
     fn test(&mut self, ids: &[u32]) -> f64 {
-        for id in ids {
-            self.test_one(*id);
+        let Some(mesh) = &self.scene.mesh else {
+            for id in ids {
+                self.one.test_one(*id);
+            }
+            return self.t();
+        };
+        for ids in ids.chunks(L::WIDTH) {
+            let mut met = Met { t: L::zero(), valid: L::Mask::splat(false) };
+            let from_nowhere = (L::splat(-1.0), L::zero(), L::zero());
+            mesh.crossings_of_one(ids, (self.o, self.d), from_nowhere, &mut met);
+            let mut rest = (met.valid & L::zero().lt(met.t) & met.t.le(L::splat(self.t()))).bits();
+            let mut t = [L::Elem::default(); 16];
+            met.t.store(&mut t);
+            while rest != 0 {
+                let i = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                if let Some(&id) = ids.get(i) {
+                    self.one.current = L::One::splat(id as f64);
+                    self.one.crossing(L::One::splat(t[i].to_f64()), L::One::zero(), Mask::splat(true));
+                }
+            }
         }
-        self.t
+        self.t()
+    }
+}
+
+impl<L: Lane> Alone<'_, L> {
+    #[inline(always)]
+    fn t(&self) -> f64 {
+        let mut t = [L::Elem::default(); 16];
+        self.one.t.store(&mut t);
+        t[0].to_f64()
     }
 }
 
@@ -263,11 +321,21 @@ fn timed<T>(rounds: usize, mut f: impl FnMut() -> T) -> (f64, T) {
 }
 
 fn rate(what: &str, scene: &Scene, tree: &Bvh, rays: &[Ray]) {
-    for (how, together) in [("alone", false), ("a register at a time", true)] {
-        let (seconds, hits) = timed(ROUNDS, || in_widest_lanes(Trace { scene, tree, rays, together }));
+    let ways = [
+        ("f64, alone", false, false),
+        ("f64, a register at a time", true, false),
+        ("f32, alone", false, true),
+        ("f32, a register at a time", true, true),
+    ];
+    for (how, together, short) in ways {
+        let trace = || Trace { scene, tree, rays, together };
+        let (seconds, hits) = match short {
+            true => timed(ROUNDS, || in_widest_lanes_of_f32(trace())),
+            false => timed(ROUNDS, || in_widest_lanes(trace())),
+        };
         let (rate, per) = (rays.len() as f64 / seconds / 1e6, seconds / rays.len() as f64 * 1e9);
         let share = 100.0 * hits as f64 / rays.len() as f64;
-        println!("  {what:<22} {how:<22} {rate:7.2} M rays/s ({per:.0} ns a ray, {share:.1} % hit)");
+        println!("  {what:<14} {how:<26} {rate:7.2} M rays/s ({per:.0} ns a ray, {share:.1} % hit)");
     }
 }
 

@@ -206,7 +206,7 @@ fn stats_json_has_every_field() {
     assert_eq!(stats["size"], serde_json::json!([16, 12]));
     assert_eq!(stats["threads"], 1, "one tile is work for one");
     assert_eq!(stats["precision"], "f64");
-    assert_eq!(stats["samples_per_pixel"], 4);
+    assert_eq!(stats["samples_per_pixel"], 4.0);
     assert_eq!(stats["rays"]["camera"], 16 * 12 * 4);
     for phase in ["parse", "evaluate", "world", "render", "encode", "total"] {
         assert!(stats["seconds"][phase].as_f64().unwrap() >= 0.0, "{phase}");

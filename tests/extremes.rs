@@ -57,6 +57,7 @@ checks! {
     tree,
     intervals,
     energy,
+    coverage,
     powers,
     scales,
     moves,
@@ -66,6 +67,7 @@ checks! {
     treeless,
     parts,
     instructions,
+    stated,
 }
 
 #[test]

@@ -5,7 +5,7 @@ use rtdsl::math::hash::KeyedHash;
 use rtdsl::math::real::Bool;
 use rtdsl::math::{Affine, Dd, Mask, Real};
 use rtdsl::render::ray::Own;
-use rtdsl::render::shape::{Kind, Ring, Tube};
+use rtdsl::render::shape::{Kind, Ring, Tube, Visit};
 use rtdsl::verify::specimen::Specimen;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -185,7 +185,9 @@ fn every_lane_gives_the_bits_of_its_ray_alone() {
                 let here = mask(|i| case % 2 == 1 && (case / 2 + i as u64).is_multiple_of(3));
                 let outward = mask(|i| (case + i as u64) % 4 < 2);
                 let own = Own { here, part: Four([0.0; WIDTH]), outward };
-                let together = seen::<Four>(&shape, lanes(rays.map(|r| r.0)), lanes(rays.map(|r| r.1)), own);
+                let (o, d) = (lanes(rays.map(|r| r.0)), lanes(rays.map(|r| r.1)));
+                let together = seen::<Four>(&shape, o, d, own);
+                let nearest = first::<Four>(&shape, (o, d), own);
                 for (i, (o, d)) in rays.into_iter().enumerate() {
                     let own = Own { here: Bool(here.0[i]), part: 0.0, outward: Bool(outward.0[i]) };
                     let alone = seen::<f64>(&shape, o, d, own);
@@ -193,12 +195,37 @@ fn every_lane_gives_the_bits_of_its_ray_alone() {
                         together.iter().filter(|x| x.2.0[i]).map(|x| (bits(x.0.0[i]), x.1.0[i])).collect();
                     let wanted: Vec<_> = alone.iter().filter(|x| x.2.0).map(|x| (bits(x.0), x.1)).collect();
                     assert_eq!(mine, wanted, "shape {k}, case {case}, lane {i}");
+                    let (t, part) = first::<f64>(&shape, (o, d), own);
+                    let mine = (bits(nearest.0.0[i]), nearest.1.0[i]);
+                    assert_eq!(mine, (bits(t), part), "the nearest of shape {k}, case {case}, lane {i}");
                     met += wanted.len();
                 }
             }
         }
     }
     assert!(met > 20_000, "{met}");
+}
+
+/// The nearest crossing, looked for as rays do: without those that come after one.
+struct First<R> {
+    t: R,
+    part: R,
+}
+
+impl<R: Real> Visit<R> for First<R> {
+    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
+        let m = valid & R::zero().lt(t) & t.lt(self.t);
+        (self.t, self.part) = (R::select(m, t, self.t), R::select(m, part, self.part));
+    }
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        valid & !R::zero().lt(t)
+    }
+}
+
+fn first<R: Real>(shape: &Specimen, (o, d): ([R; 3], [R; 3]), own: Own<R>) -> (R, R) {
+    let mut first = First { t: R::splat(f64::INFINITY), part: R::splat(-1.0) };
+    shape.visit::<R>(o, d, Own::of(own.here, own.part, own.outward), &mut first);
+    (first.t, first.part)
 }
 
 fn seen<R: Real>(shape: &Specimen, o: [R; 3], d: [R; 3], own: Own<R>) -> Vec<(R, R, R::Mask)> {

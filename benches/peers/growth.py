@@ -25,9 +25,10 @@ FLOOR = 'plane(y: 0, mat: phong(color: checker(linear(0.9, 0.9, 0.85), linear(0.
 
 
 def spheres(n):
-    """`n` balls in the same room that all together hide as much of it whatever `n` is; one in four is a mirror."""
+    """`n` balls in the same room that fill as much of it whatever `n` is; one in four is a mirror. (Balls that hide as much of it
+    get so small that a ray passes between ever more of them, by the cube root of `n`, before it meets one.)"""
     return f'''let skins = [for i in 0..4 {{ phong(color: hsv(i * 90deg, 0.6, 0.7), reflect: if i == 3 {{ 0.6 }} else {{ 0 }}) }}]
-for i in 0..{n} {{ sphere(at: in_box([-8, 0, -8], [8, 6, 8], i), r: {4 / n ** 0.5:.9f}, mat: skins[i % 4]) }}
+for i in 0..{n} {{ sphere(at: in_box([-8, 0, -8], [8, 6, 8], i), r: {2.15 / n ** (1 / 3):.9f}, mat: skins[i % 4]) }}
 '''
 
 

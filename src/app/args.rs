@@ -1,8 +1,11 @@
 //! The command line. Values are checked, in `argument`, as far as they can be without the scene.
 
+use super::accuracy::AccuracyArgs;
 use super::argument::{
-    address, anti_aliasing, assignment, bits, compression, crop, glob_pattern, pixel, poll_interval, precision, size,
+    address, anti_aliasing, assignment, bits, compression, crop, glob_pattern, max_error, pixel, poll_interval,
+    precision, seconds, size,
 };
+use super::trade::axis::Axis;
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
 use crate::scene::{AntiAliasing, Precision, Settings, range};
@@ -40,6 +43,8 @@ pub enum Command {
     Explain(ExplainArgs),
     /// Try out on this machine what rtdsl says of its accuracy.
     Verify(VerifyArgs),
+    /// Measure what accuracy costs: error against time for this scene on this machine.
+    Trade(TradeArgs),
     /// List the parameters that `--set` can change.
     Params(ParamsArgs),
     /// Explain a word of the scene language.
@@ -95,6 +100,18 @@ pub struct RenderArgs {
     /// The view.
     #[command(flatten)]
     pub view: ViewArgs,
+    /// The accuracy.
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
+    /// Write a picture of each pixel's error: .png (white is the error asked for, red beyond it) or .exr (in shares of white).
+    #[arg(long, value_name = "FILE", conflicts_with = "aa")]
+    pub error_map: Option<PathBuf>,
+    /// Write a picture of how sure each pixel is: proved green, bounded blue, estimated orange, open red.
+    #[arg(long, value_name = "FILE", conflicts_with = "aa")]
+    pub status_map: Option<PathBuf>,
+    /// End with 4 where a pixel doesn't reach the error asked for.
+    #[arg(long, conflicts_with = "aa")]
+    pub strict: bool,
     /// Make only this part of the picture, in pixels from its top left corner.
     #[arg(long, value_name = "X,Y,W,H", value_parser = crop, allow_hyphen_values = true)]
     pub crop: Option<Crop>,
@@ -128,6 +145,9 @@ pub struct WatchArgs {
     /// The view.
     #[command(flatten)]
     pub view: ViewArgs,
+    /// The accuracy.
+    #[command(flatten)]
+    pub accuracy: AccuracyArgs,
     /// Show the picture on a live page: at ADDR, or on this machine alone at any free port.
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", value_parser = address)]
     pub serve: Option<SocketAddr>,
@@ -226,6 +246,9 @@ pub struct VerifyArgs {
     /// As many cases as the stated bounds speak of: minutes instead of seconds.
     #[arg(long)]
     pub extremes: bool,
+    /// Only whether pictures keep the errors that are stated of them, with many cases: closed forms, and the pictures of FILE.
+    #[arg(long, conflicts_with_all = ["extremes", "only"])]
+    pub coverage: bool,
     /// Make this check alone, and others so named.
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
@@ -238,6 +261,38 @@ pub struct VerifyArgs {
     /// Print the figures as a table in Markdown.
     #[arg(long, conflicts_with = "json")]
     pub markdown: bool,
+}
+
+/// `rtdsl trade`.
+#[derive(Debug, Args)]
+pub struct TradeArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Folder for trade.csv, trade.json, trade.svg and index.html. [default: FILE's name with `-trade`, in the current folder]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Turn only this dial, and others so named. [default: all]
+    #[arg(long, value_enum, value_name = "DIAL", value_delimiter = ',')]
+    pub axis: Vec<Axis>,
+    /// Time for all of it: what wouldn't fit is left out.
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = seconds)]
+    pub budget: f64,
+    /// Say which setting is the cheapest that keeps this error, as in `2/255`; ends with 4 where none does.
+    #[arg(long, value_name = "E", value_parser = max_error)]
+    pub suggest: Option<f64>,
+    /// The setting around which dials are turned.
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Worker threads. [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// Print trade.json on standard output; docs/trade.md tells of the fields.
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing but errors, and what `--suggest` asks for.
+    #[arg(short, long)]
+    pub quiet: bool,
 }
 
 /// `rtdsl params`.

@@ -2,7 +2,7 @@
 
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
-use crate::scene::{AntiAliasing, Precision, range};
+use crate::scene::{Accuracy, AntiAliasing, Precision, range};
 use std::net::SocketAddr;
 use std::time::Duration;
 
@@ -38,6 +38,54 @@ pub fn anti_aliasing(s: &str) -> Result<AntiAliasing, String> {
     match n.parse() {
         Ok(n) if (1..=AntiAliasing::LARGEST_GRID).contains(&n) => Ok(AntiAliasing::Grid(n)),
         _ => Err(format!("the grid is a whole number from 1 to {}, not `{n}`", AntiAliasing::LARGEST_GRID)),
+    }
+}
+
+/// `2/255` or `0.01`.
+pub fn max_error(s: &str) -> Result<f64, String> {
+    let number = |s: &str| s.trim().parse::<f64>().ok();
+    let value = match s.split_once('/') {
+        Some((a, b)) => number(a).zip(number(b)).map(|(a, b)| a / b),
+        None => number(s),
+    };
+    let (least, most) = (Accuracy::LEAST_ERROR, Accuracy::LARGEST_ERROR);
+    match value {
+        Some(x) if (least..=most).contains(&x) => Ok(x),
+        Some(x) if x > most && s.parse::<f64>().is_ok() => {
+            Err(format!("an error is a share of white, {most} at most: two codes of 8 bits are `2/255`"))
+        }
+        Some(_) => Err(format!("an error is from {least} to {most}, as in `2/255`")),
+        None => Err("write the largest error as a share of white, as in `2/255`".into()),
+    }
+}
+
+/// `0.999`.
+pub fn confidence(s: &str) -> Result<f64, String> {
+    match s.parse::<f64>() {
+        // Beyond, the random numbers themselves aren't random enough; and half is no confidence.
+        Ok(p) if (0.5..=0.999_999_999).contains(&p) => Ok(p),
+        _ => Err("write a probability from 0.5 to 0.999999999, as in `0.999`".into()),
+    }
+}
+
+/// `2s`, `500ms`, `1.5`, `3min`.
+pub fn seconds(s: &str) -> Result<f64, String> {
+    let (number, unit) = match s.find(|c: char| c.is_ascii_alphabetic()) {
+        // `1e3` is a number.
+        Some(i) if s.parse::<f64>().is_err() => (&s[..i], &s[i..]),
+        _ => (s, "s"),
+    };
+    let factor = match unit {
+        "ms" => 0.001,
+        "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(format!("`{unit}` is no unit of time here: write `ms`, `s`, `min` or `h`, as in `2s`")),
+    };
+    match number.trim().parse::<f64>().map(|x| x * factor) {
+        Ok(x) if (Accuracy::LEAST_TIME..=Accuracy::LONGEST_TIME).contains(&x) => Ok(x),
+        Ok(_) => Err("a time is from `1ms` to a week".into()),
+        Err(_) => Err("write a number and its unit, as in `2s`, `500ms` or `3min`".into()),
     }
 }
 
@@ -131,6 +179,16 @@ mod tests {
         for wrong in ["grid:0", "grid:33", "grid", "on", "grid:-1"] {
             assert!(anti_aliasing(wrong).is_err(), "{wrong}");
         }
+        assert_eq!((max_error("2/255"), max_error("0.01")), (Ok(2.0 / 255.0), Ok(0.01)));
+        for wrong in ["2", "0", "1/0", "-1/255", "2/", "x", "nan", "", "1e-9"] {
+            assert!(max_error(wrong).is_err(), "{wrong}");
+        }
+        let times = ["2s", "500ms", "1.5", "3min", "1e1", "0.5h"].map(|t| seconds(t).unwrap());
+        assert_eq!(times, [2.0, 0.5, 1.5, 180.0, 10.0, 1800.0]);
+        for wrong in ["0", "2days", "s", "", "-1s", "nan", "inf", "8000h", "2 2s", "é"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+        assert!(confidence("0.999").is_ok() && confidence("1").is_err() && confidence("99%").is_err());
         assert_eq!(crop("1, 2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
         assert!(crop("1,2,0,4").is_err() && crop("1,2,3").is_err() && crop("-1,2,3,4").is_err());
         assert_eq!(pixel("640,360"), Ok((640, 360)));

@@ -3,6 +3,7 @@
 use super::progress::Bar;
 use crate::film::buffer::{from_bytes, to_bytes};
 use crate::film::{self, Compression, Depth, Developer, Digest, Film, Format, PngWriter, Recipe};
+use crate::render::certify::Certificate;
 use crate::render::{self, Options, RayCounts, Rendered, World};
 use std::io::{self, Seek, Write};
 use std::sync::atomic::AtomicBool;
@@ -32,6 +33,8 @@ pub struct Made {
     pub hash: Option<String>,
     /// The picture itself.
     pub pixels: Pixels,
+    /// What can be said of its error, where that was asked for.
+    pub certificate: Option<Box<Certificate>>,
 }
 
 /// The pixels of a picture.
@@ -51,13 +54,15 @@ impl Make<'_> {
     /// # Errors
     /// A file can't be made of it.
     pub fn picture(&self, format: Format) -> io::Result<Option<Made>> {
-        if let Format::Png(depth, compression) = format {
+        if let Format::Png(depth, compression) = format
+            && self.options.accuracy.is_none()
+        {
             return self.png(depth, compression);
         }
         let rendered = render::render(self.world, self.options, self.bar, &AtomicBool::new(false));
-        Ok(rendered.map(|Rendered { film, rays, threads }| {
+        Ok(rendered.map(|Rendered { film, rays, threads, certificate }| {
             let hash = self.is_hashed.then(|| film.hash());
-            Made { rays, threads, hash, pixels: Pixels::Film(film) }
+            Made { rays, threads, hash, pixels: Pixels::Film(film), certificate }
         }))
     }
 
@@ -92,7 +97,13 @@ impl Make<'_> {
         let Some(streamed) = streamed else { return Ok(None) };
         writer.finish()?;
         let hash = digest.map(Digest::end);
-        Ok(Some(Made { rays: streamed.rays, threads: streamed.threads, hash, pixels: Pixels::File(file) }))
+        Ok(Some(Made {
+            rays: streamed.rays,
+            threads: streamed.threads,
+            hash,
+            pixels: Pixels::File(file),
+            certificate: None,
+        }))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The program: one file a command, and what several of them need. Only this floor prints, reads arguments and knows exit
 //! codes.
 
+pub mod accuracy;
 pub mod args;
 mod argument;
 pub mod check;
@@ -10,6 +11,7 @@ pub mod gallery;
 pub mod help;
 pub mod load;
 mod make;
+mod map;
 pub mod params;
 pub mod picture;
 pub mod preview;
@@ -18,6 +20,7 @@ pub mod render;
 pub mod sight;
 pub mod stats;
 pub mod stop;
+pub mod trade;
 pub mod verify;
 pub mod view;
 pub mod watch;
@@ -48,6 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(a) => check::run(a),
         Command::Explain(a) => explain::run(a),
         Command::Verify(a) => verify::run(a),
+        Command::Trade(a) => trade::run(a),
         Command::Params(a) => params::run(a),
         Command::Help(a) => help::run(a),
         Command::Completions(a) => completions::run(a),

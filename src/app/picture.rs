@@ -1,11 +1,13 @@
 //! What every command does that makes a picture: `render`, `watch` and `gallery` give the same bytes because they share this.
 
 use super::Stop;
+use super::accuracy;
 use super::args::ViewArgs;
 use super::view::settings_line;
 use crate::diag::Diagnostic;
 use crate::film::{Compression, Depth, Format, Recipe, recipe};
 use crate::lang::Evaluated;
+use crate::render::certify::Certificate;
 use crate::render::{Options, World};
 use crate::scene::{Camera, Precision};
 use std::path::Path;
@@ -55,12 +57,26 @@ pub fn fits(world: &World, evaluated: &Evaluated, options: &Options) -> Result<(
     Ok(())
 }
 
-/// What the picture is made from, as it is written into it.
-pub fn recipe_of(evaluated: &Evaluated, options: &Options, camera: &Camera) -> Recipe {
-    Recipe::new()
+/// What the picture is made from and how good it is, as it is written into it.
+pub fn recipe_of(
+    evaluated: &Evaluated,
+    options: &Options,
+    camera: &Camera,
+    certificate: Option<&Certificate>,
+) -> Recipe {
+    let recipe = Recipe::new()
         .with("rtdsl:scene", recipe::scene_digest(&evaluated.sources))
         .with("rtdsl:settings", settings_line(options, camera))
-        .with("rtdsl:parameters", parameters_line(evaluated))
+        .with("rtdsl:parameters", parameters_line(evaluated));
+    with_accuracy(recipe, certificate)
+}
+
+/// Adds what can be said of the picture's error, where that was asked for.
+pub fn with_accuracy(recipe: Recipe, certificate: Option<&Certificate>) -> Recipe {
+    match certificate {
+        Some(c) => recipe.with("rtdsl:accuracy", accuracy::line(c)),
+        None => recipe,
+    }
 }
 
 /// Every parameter's value, as `--set` takes it.

@@ -69,6 +69,11 @@ impl Steps {
         Steps(bar.clone().with_style(style.unwrap_or_else(|_| bar.style())))
     }
 
+    /// So many steps more are to be done.
+    pub fn lengthen(&self, steps: u64) {
+        self.0.inc_length(steps);
+    }
+
     /// A step begins.
     pub fn begin(&self, name: &'static str) {
         self.0.set_message(name);

@@ -1,17 +1,20 @@
 //! `rtdsl render`: from the text to the picture file.
 
+use super::accuracy;
 use super::args::RenderArgs;
 use super::load::{load, request, shown_name};
 use super::make::{Made, Make, Pixels};
-use super::picture::{fits, format_of, look, recipe_of};
+use super::map::{Kind, Map};
+use super::picture::{fits, format_of, look, recipe_of, with_accuracy};
 use super::progress::Bar;
-use super::stats::{self, Seconds, Stats};
+use super::stats::{self, AccuracyStats, Seconds, Stats};
 use super::view::{checked_crop, precision_word};
 use super::{Exit, Stop};
 use crate::diag::Diagnostic;
 use crate::film::{Format, OutputFile, Recipe};
 use crate::lang::Evaluated;
-use crate::render::World;
+use crate::render::{Options, World};
+use crate::scene::Precision;
 use std::io::{self, Cursor, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -33,10 +36,12 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let (camera, mut options) = look(&evaluated, &args.view)?;
     options.crop = checked_crop(args.crop, &options)?;
     options.threads = args.threads.map(|n| n as usize);
+    args.accuracy.apply(&mut options, format, args.view.precision == Some(Precision::F32))?;
     let target = match &output {
         Output::Stdout => None,
         Output::File(path) => Some(target(path, &evaluated)?),
     };
+    let maps = maps(args, &evaluated, &options)?;
 
     let world_start = Instant::now();
     let world = World::build(&evaluated.scene, camera);
@@ -45,7 +50,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
 
     let render_start = Instant::now();
     let part = options.crop_or_all();
-    let recipe = recipe_of(&evaluated, &options, camera);
+    let recipe = recipe_of(&evaluated, &options, camera, None);
     let bar = Bar::new(part.width as u64 * part.height as u64, args.quiet);
     let make = Make { world: &world, options: &options, bar: &bar, recipe: &recipe, is_hashed: args.stats.is_some() };
     let Some(made) = make.picture(format).map_err(|e| Stop::system("the picture can't be encoded", e))? else {
@@ -55,12 +60,18 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let render_seconds = render_start.elapsed().as_secs_f64();
 
     let encode_start = Instant::now();
-    let Made { rays, threads, hash, pixels } = made;
+    let Made { rays, threads, hash, pixels, certificate } = made;
+    let recipe = with_accuracy(recipe, certificate.as_deref());
     match (&output, &target) {
         (Output::File(path), Some(target)) => target
             .write(|out| pixels.write(format, &recipe, out))
             .map_err(|e| Stop::system(format!("`{}` can't be written", path.display()), e))?,
         _ => write_stdout(pixels, format, &recipe)?,
+    }
+    if let Some(c) = &certificate {
+        for map in maps {
+            map.write(c, part.width, &recipe)?;
+        }
     }
     let encode_seconds = encode_start.elapsed().as_secs_f64();
 
@@ -69,7 +80,8 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
             size: [part.width, part.height],
             threads,
             precision: precision_word(options.precision),
-            samples_per_pixel: options.aa.side() * options.aa.side(),
+            samples_per_pixel: rays.camera as f64 / (part.width as f64 * part.height as f64),
+            accuracy: certificate.as_deref().map(|c| AccuracyStats::of(c, &part)),
             rays: rays.into(),
             seconds: Seconds {
                 parse: evaluated.parse_seconds,
@@ -97,9 +109,36 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
         let seconds = start.elapsed().as_secs_f64();
         let _ = writeln!(io::stderr(), "{}  {}x{}  {seconds:.2} s", path.display(), part.width, part.height);
     }
+    let is_open = certificate.as_ref().is_some_and(|c| c.summary.open > 0);
+    if let Some(c) = &certificate
+        && !args.quiet
+    {
+        // A figure that was asked for, on a terminal or not.
+        let _ = writeln!(io::stderr(), "{}", accuracy::line(c));
+    }
     // The process is about to end, and gives all its memory back at once.
     std::mem::forget((world, evaluated));
-    Ok(Exit::Done)
+    Ok(if args.strict && is_open { Exit::Unmet } else { Exit::Done })
+}
+
+/// The maps of the error that are asked for.
+fn maps<'a>(args: &'a RenderArgs, evaluated: &Evaluated, options: &Options) -> Result<Vec<Map<'a>>, Stop> {
+    let asked = [(&args.error_map, "--error-map", Kind::Error), (&args.status_map, "--status-map", Kind::Status)];
+    let given = || asked.into_iter().filter_map(|(path, word, kind)| Some((path.as_deref()?, word, kind)));
+    if options.accuracy.is_none()
+        && let Some(word) = given().map(|(_, word, _)| word).next().or(args.strict.then_some("--strict"))
+    {
+        let d = Diagnostic::error(format!("`{word}` is for pictures with a stated error"));
+        return Err(Stop::usage(d.note("ask for one: `--max-error 2/255`, or `render(error: 2/255)` in the scene")));
+    }
+    let mut taken: Vec<&Path> = args.out.as_deref().into_iter().collect();
+    for (path, word, _) in given() {
+        if taken.contains(&path) {
+            return Err(Stop::usage(Diagnostic::error(format!("`{word}` needs a file of its own"))));
+        }
+        taken.push(path);
+    }
+    given().map(|(path, _, kind)| Map::new(path, kind, evaluated)).collect()
 }
 
 /// Where the picture goes and in what form.

@@ -1,7 +1,9 @@
 //! What a picture took: `--stats`.
 
+use super::accuracy;
 use super::args::StatsForm;
-use crate::render::RayCounts;
+use crate::render::certify::Certificate;
+use crate::render::{Crop, RayCounts};
 use serde::Serialize;
 
 /// The measurements of one run; field names are those of the JSON form.
@@ -13,8 +15,10 @@ pub struct Stats {
     pub threads: usize,
     /// `"f64"` or `"f32"`.
     pub precision: &'static str,
-    /// Camera rays a pixel.
-    pub samples_per_pixel: u32,
+    /// Camera rays a pixel; with a stated error, on average.
+    pub samples_per_pixel: f64,
+    /// What can be said of the picture's error, where that was asked for.
+    pub accuracy: Option<AccuracyStats>,
     /// Rays traced.
     pub rays: Rays,
     /// Wall-clock seconds.
@@ -25,6 +29,65 @@ pub struct Stats {
     pub features: Vec<&'static str>,
     /// [`Film::hash`](crate::film::Film::hash): the same for the same picture everywhere.
     pub image_hash: String,
+}
+
+/// How good a picture is.
+#[derive(Clone, Debug, Serialize)]
+pub struct AccuracyStats {
+    /// All of it in one line.
+    pub line: String,
+    /// The error asked for, as a share of white; `None` for the least that the time allows.
+    pub asked_error: Option<f64>,
+    /// Seconds that were allowed.
+    pub asked_time: Option<f64>,
+    /// Probability with which a bounded pixel keeps the error.
+    pub confidence: f64,
+    /// The error that all pixels but open ones keep, as a share of white.
+    pub reached: f64,
+    /// Pixels that keep it for certain.
+    pub proved: usize,
+    /// Pixels that keep it with that probability.
+    pub bounded: usize,
+    /// Pixels that keep it as far as samples tell.
+    pub estimated: usize,
+    /// Pixels that don't, or of which it isn't known.
+    pub open: usize,
+    /// The largest error that any pixel but an open one may have, as a share of white.
+    pub worst: f64,
+    /// Where that is: column and row of the picture.
+    pub worst_pixel: Option<[u32; 2]>,
+    /// The largest error that an open pixel may have, as far as anything is known of it; as a share of white.
+    pub worst_open: Option<f64>,
+    /// Regions of the picture that were bounded.
+    pub evaluations: u64,
+    /// Rays from the camera.
+    pub samples: u64,
+}
+
+impl AccuracyStats {
+    /// What `c` says of a picture of which `part` was made.
+    pub fn of(c: &Certificate, part: &Crop) -> AccuracyStats {
+        let s = &c.summary;
+        let worst = s.worst.iter().flatten().max_by(|a, b| a.codes.total_cmp(&b.codes));
+        let place = |at: usize| [part.x + at as u32 % part.width, part.y + at as u32 / part.width];
+        let open = c.pixels.iter().filter(|p| !p.keeps(c.reached)).map(|p| p.codes / 255.0);
+        AccuracyStats {
+            line: accuracy::line(c),
+            asked_error: c.accuracy.error,
+            asked_time: c.accuracy.time,
+            confidence: c.accuracy.confidence,
+            reached: c.reached / 255.0,
+            proved: s.proved,
+            bounded: s.bounded,
+            estimated: s.estimated,
+            open: s.open,
+            worst: s.worst_codes() / 255.0,
+            worst_pixel: worst.map(|w| place(w.at)),
+            worst_open: open.max_by(f64::total_cmp),
+            evaluations: c.summary.evaluations,
+            samples: c.summary.samples,
+        }
+    }
 }
 
 /// Rays by kind.
@@ -84,6 +147,7 @@ impl Stats {
             ("threads", self.threads.to_string()),
             ("precision", self.precision.to_string()),
             ("samples per pixel", self.samples_per_pixel.to_string()),
+            ("accuracy", self.accuracy.as_ref().map_or("not asked for".into(), |a| a.line.clone())),
             (
                 "rays",
                 format!(
@@ -124,7 +188,8 @@ mod tests {
             size: [4, 3],
             threads: 2,
             precision: "f64",
-            samples_per_pixel: 4,
+            samples_per_pixel: 4.0,
+            accuracy: None,
             rays: RayCounts { camera: 48, shadow: 10, reflected: 2, transmitted: 1 }.into(),
             seconds: Seconds { total: 0.5, ..Seconds::default() },
             peak_memory_bytes: None,

@@ -4,14 +4,17 @@ use super::Stop;
 use super::args::ViewArgs;
 use crate::diag::Diagnostic;
 use crate::render::{Crop, Options};
-use crate::scene::{AntiAliasing, Camera, Precision, Scene};
+use crate::scene::{Accuracy, AntiAliasing, Camera, Precision, Scene};
 
 impl ViewArgs {
     /// How to trace `scene`.
     pub fn options(&self, scene: &Scene) -> Options {
         let mut options = Options::from_settings(&scene.settings);
         (options.width, options.height) = self.size.unwrap_or((options.width, options.height));
-        options.aa = self.aa.unwrap_or(options.aa);
+        if let Some(aa) = self.aa {
+            // So many rays, whatever the scene wants them to achieve.
+            (options.aa, options.accuracy) = (aa, None);
+        }
         options.max_depth = self.max_depth.unwrap_or(options.max_depth);
         options.precision = self.precision.unwrap_or(options.precision);
         options
@@ -63,7 +66,19 @@ pub fn checked_crop(crop: Option<Crop>, options: &Options) -> Result<Option<Crop
 
 /// The settings on one line, as a picture's recipe has them.
 pub fn settings_line(options: &Options, camera: &Camera) -> String {
-    let mut line = format!("size={}x{} aa={}", options.width, options.height, aa_word(options.aa));
+    let mut line = format!("size={}x{}", options.width, options.height);
+    match &options.accuracy {
+        None => line += &format!(" aa={}", aa_word(options.aa)),
+        Some(Accuracy { error, time, confidence }) => {
+            if let Some(error) = error {
+                line += &format!(" max-error={error}");
+            }
+            if let Some(time) = time {
+                line += &format!(" time={time}s");
+            }
+            line += &format!(" confidence={confidence}");
+        }
+    }
     line += &format!(" max-depth={} precision={}", options.max_depth, precision_word(options.precision));
     if let Some(name) = &camera.name {
         line += &format!(" camera={name}");

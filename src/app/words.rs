@@ -1,5 +1,7 @@
 //! Numbers, times and arguments as people and shells read them: the same wherever they stand.
 
+pub use crate::diag::thousands;
+
 /// A word for a POSIX shell.
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=,+@%".contains(c);
@@ -20,21 +22,12 @@ pub fn duration(microseconds: u64) -> String {
     }
 }
 
-/// `1,234,567`
-pub fn thousands(n: u64) -> String {
-    let digits = n.to_string();
-    let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).unwrap_or_default()).collect();
-    groups.join(",")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn numbers() {
-        assert_eq!([0, 7, 1234, 1_234_567].map(thousands), ["0", "7", "1,234", "1,234,567"]);
         assert_eq!([120, 5_300, 53_000, 5_310_000].map(duration), ["0.12 ms", "5.3 ms", "53 ms", "5.31 s"]);
     }
 

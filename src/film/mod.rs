@@ -1,9 +1,10 @@
 //! From linear colours to picture files: the picture in linear light, its display codes, the formats, and writing whole
-//! files or none; and reading the files of others.
+//! files or none; reading the files of others, and telling how far a picture is from the true one.
 
 pub mod buffer;
 pub mod develop;
 pub mod format;
+pub mod metric;
 pub mod png;
 pub mod read;
 pub mod recipe;

@@ -1,6 +1,7 @@
 //! Rays in bulk, as columns: a kernel reads and writes several of them at a time. Numbers of slots and primitives are stored
 //! as scalars too, so that they move with the rays; all stay exact (below 2^24 even in `f32`).
 
+use crate::math::real::select3;
 use crate::math::{Elem, Lane};
 use std::ops::{Deref, DerefMut};
 
@@ -52,6 +53,13 @@ pub fn store3<L: Lane>(c: &mut Column3<L::Elem>, g: usize, v: [L; 3]) {
     for i in 0..3 {
         v[i].store(&mut c[i][g..]);
     }
+}
+
+/// Writes the vectors of those rays from number `g` on that are `here`.
+#[inline(always)]
+pub fn put3<L: Lane>(c: &mut Column3<L::Elem>, g: usize, here: L::Mask, v: [L; 3]) {
+    let old = load3(c, g);
+    store3(c, g, select3(here, v, old));
 }
 
 /// [`RayBatch::source`] of rays from the camera, and the id of what a ray met that met nothing.

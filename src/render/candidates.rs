@@ -13,6 +13,10 @@ use crate::math::real::{Mask, dot, each3, splat3, three};
 /// the examples, one ray at a time: 3 to 6 are equally good, 12 costs a fifth more, 24 to 48 up to half.
 pub const LONGEST_LIST: usize = 4;
 
+/// A node of the tree looked at for all rays takes about as long as this many of them take to go through the tree alone, so no more
+/// are looked at.
+const RAYS_A_NODE: usize = 8;
+
 /// What a batch of rays may meet.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
@@ -23,11 +27,12 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Collects what `keep` and `keep_plane` don't exclude.
+    /// Collects what `keep` and `keep_plane` don't exclude, for so many `rays`; of many, those that it pays to look for.
     #[inline(always)]
     pub fn gather(
         &mut self,
         world: &World,
+        rays: usize,
         keep: impl FnMut(&Bounds) -> bool,
         mut keep_plane: impl FnMut([f64; 3], f64) -> bool,
     ) {
@@ -37,13 +42,14 @@ impl Candidates {
         let ids = &mut self.ids;
         self.tree = false;
         let tree = &mut self.tree;
-        world.bvh.gather(keep, |id| {
+        let ended = world.bvh.gather(1 + rays / RAYS_A_NODE, keep, |id| {
             *tree = ids.len() >= planes + LONGEST_LIST;
             if !*tree {
                 ids.push(id);
             }
             !*tree
         });
+        self.tree |= !ended;
         if self.tree {
             self.ids.truncate(planes);
         }
@@ -87,6 +93,7 @@ pub fn narrow_to_batch<L: Lane>(world: &World, rays: &RayBatch<L::Elem>, out: &m
     let cone = beam.cone(margin);
     out.gather(
         world,
+        rays.len,
         #[inline(always)]
         |b| cone.may_meet(b),
         |n, offset| cone.may_reach(&origins, n, offset),

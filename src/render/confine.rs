@@ -43,32 +43,43 @@ fn is_thin(m: [[f64; 3]; 3], size: f64) -> bool {
     !(largest(minors.map(largest)) < EXTREME * determinant.abs())
 }
 
-/// Shows only crossings within a box.
-pub struct Confined<'v, R, V> {
+/// Shows only crossings of some rays, and only within a box.
+pub struct Confined<'v, R: Real, V> {
     visit: &'v mut V,
+    /// The rays. What a kernel makes of others doesn't count: whether it is asked depends on the rays beside them.
+    met: R::Mask,
     /// From which t to which; the first above the second where the box is missed. `None` where nothing is confined.
     stay: Option<(R, R)>,
 }
 
 impl<'v, R: Real, V: Visit<R>> Confined<'v, R, V> {
-    /// Crossings of rays from `o` along `d`, within `bounds`, if there are any.
+    /// Crossings of the rays of `met`, from `o` along `d`, within `bounds`, if there are any.
     #[inline(always)]
-    pub fn new(bounds: Option<&Bounds>, (o, d): ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
-        let stay = bounds.map(
-            #[inline(always)]
-            |b| Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)]),
-        );
-        Confined { visit, stay }
+    pub fn new(met: R::Mask, bounds: Option<&Bounds>, (o, d): ([R; 3], [R; 3]), visit: &'v mut V) -> Self {
+        // No `Option::map`: its closure may be compiled without the lanes' instructions.
+        let mut stay = None;
+        if let Some(b) = bounds {
+            stay = Some(Slabs::narrow(o, d).stay_near([splat3(b.lo), splat3(b.hi)]));
+        }
+        Confined { visit, met, stay }
     }
 }
 
 impl<R: Real, V: Visit<R>> Visit<R> for Confined<'_, R, V> {
     #[inline(always)]
     fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
+        let valid = valid & self.met;
         match self.stay {
             None => self.visit.crossing(t, part, valid),
             // Not left out where it is before or after its stay: a hole would be worse than a rounding error.
             Some((enter, leave)) => self.visit.crossing(t.max(enter).min(leave), part, valid & enter.le(leave)),
+        }
+    }
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        match self.stay {
+            None => self.visit.needs_further(t, valid & self.met),
+            Some(_) => self.met, // what is shown is another t
         }
     }
 }
@@ -97,7 +108,7 @@ mod tests {
         let seen = |d: [f64; 3], t: f64| {
             let mut seen = Vec::new();
             let mut visit = |t: f64, _: f64, valid: Bool| seen.push((t, valid.0));
-            Confined::new(Some(&bounds), ([0.0; 3], d), &mut visit).crossing(t, 0.0, Bool(true));
+            Confined::new(Bool(true), Some(&bounds), ([0.0; 3], d), &mut visit).crossing(t, 0.0, Bool(true));
             seen[0]
         };
         assert_eq!(seen([0.0, 0.0, 1.0], 5.0), (5.0, true));

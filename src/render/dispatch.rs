@@ -4,6 +4,7 @@
 //! library that stands in for it, only faster.
 
 use super::belt::{Belt, Watchman};
+use super::certify;
 use super::certify::{LaneSampler, Sampler};
 use super::crew::{crew, useful};
 use super::footprint::{Footprint, Recorder};
@@ -19,14 +20,17 @@ use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// Traces the picture; `None` where `cancel` was set meanwhile. Its bits depend on `world` and on size, anti-aliasing, depth
-/// and precision of `options`, on nothing else.
+/// Traces the picture; `None` where `cancel` was set meanwhile. Its bits depend on `world` and on size, anti-aliasing or error,
+/// depth and precision of `options`, on nothing else unless time is limited.
 pub fn render(world: &World, options: &Options, progress: &dyn Progress, cancel: &AtomicBool) -> Option<Rendered> {
+    if let Some(accuracy) = options.accuracy {
+        return certify::render(world, options, accuracy, (progress, cancel));
+    }
     let part = options.crop_or_all();
     let mut film = Film::new(part.width, part.height);
     let work = Work { world, options, progress, cancel };
     let (rays, threads) = work.fill(&mut film, None, None)?;
-    Some(Rendered { film, rays, threads })
+    Some(Rendered { film, rays, threads, certificate: None })
 }
 
 /// As [`render`], without a film of the whole picture: `develop` makes bytes of pixels, as many for each, on the threads
@@ -41,6 +45,17 @@ pub fn stream(
     (pixel_bytes, develop): (usize, Develop<'_>),
     take: &mut (dyn FnMut(&[u8]) -> io::Result<()> + Send),
 ) -> io::Result<Option<Streamed>> {
+    if options.accuracy.is_some() {
+        // Its pixels aren't ready in any order.
+        let Some(rendered) = render(world, options, progress, cancel) else { return Ok(None) };
+        let mut bytes = Vec::new();
+        for row in rendered.film.pixels.chunks(rendered.film.width as usize) {
+            bytes.clear();
+            develop(row, &mut bytes);
+            take(&bytes)?;
+        }
+        return Ok(Some(Streamed { rays: rendered.rays, threads: rendered.threads }));
+    }
     let (part, side) = (options.crop_or_all(), options.tile_side());
     let tiles = part.width.div_ceil(side) as usize * part.height.div_ceil(side) as usize;
     let threads = useful(options.threads, tiles);

@@ -37,14 +37,22 @@ pub struct LinearMap {
     pub world_from_local: [[f64; 3]; 3],
     /// Whether it only exchanges axes and signs: a mirror, a quarter turn. Such a map is exact, and normals keep their length.
     pub exchange: bool,
+    /// Whether it keeps lengths, all but exactly.
+    pub rigid: bool,
 }
+
+/// What a rotation's numbers, each rounded once, may leave of the right angles and unit lengths of its rows, and more: 2^-48.
+const RIGID: f64 = 1.0 / (1u64 << 48) as f64;
 
 impl LinearMap {
     /// The map with these rows and its inverse's.
     pub fn new(world_from_local: [[f64; 3]; 3], local_from_world: [[f64; 3]; 3]) -> LinearMap {
         let exchange = world_from_local.as_flattened().iter().all(|x| *x == 0.0 || x.abs() == 1.0)
             && world_from_local.iter().all(|row| row.iter().filter(|x| **x != 0.0).count() == 1);
-        LinearMap { local_from_world, world_from_local, exchange }
+        let rows = &local_from_world;
+        let rigid =
+            (0..3).all(|i| (0..=i).all(|k| (dot(rows[i], rows[k]) - if i == k { 1.0 } else { 0.0 }).abs() <= RIGID));
+        LinearMap { local_from_world, world_from_local, exchange, rigid }
     }
 }
 

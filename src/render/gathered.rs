@@ -22,7 +22,12 @@ impl<E: Elem> Gathered<'_, E> {
         let g = group.first as usize;
         if self.first && self.in_order {
             let m = L::Mask::from_bits(group.bits);
+            let whole = group.bits.count_ones() as usize == L::WIDTH;
             for (column, value) in self.radiance.iter_mut().zip(value) {
+                if whole {
+                    value.store(&mut column[g..]);
+                    continue;
+                }
                 L::select(m, value, L::load(&column[g..])).store(&mut column[g..]);
             }
             return;

@@ -100,6 +100,7 @@ mod tests {
             let region = Bounds::around([0, 1, 2].map(|c| random(k, 90 + c) * 100.0), [15.0; 3]);
             let mut found = Vec::new();
             tree.gather(
+                usize::MAX,
                 |b| b.overlaps(&region),
                 |id| {
                     found.push(id);

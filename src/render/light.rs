@@ -20,6 +20,8 @@ use crate::render::pattern::Rows;
 pub struct Shadow {
     transparent: Vec<u32>,
     spaces: Vec<Rows>,
+    /// What lately stood before each light: it often does so again.
+    blockers: Vec<Option<u32>>,
     /// Of camera rays' hits, and of others.
     ways: [Way; 2],
     /// Whether these are others.
@@ -41,6 +43,8 @@ pub struct ShadowRays<'w, L: Lane> {
     pub l: [L; 3],
     /// How far it is.
     pub distance: L,
+    /// The light, by number.
+    pub light: usize,
     /// The primitives that the light lies on.
     pub touched: &'w [u32],
 }
@@ -89,14 +93,21 @@ pub fn occlusion<L: Lane>(
     recorder: &mut Recorder,
 ) -> [L; 3] {
     let zero = [L::zero(); 3];
-    let mut open = Open { mask: active, rays };
+    let mut open = Open { mask: active, rays, blocker: None };
     // Opaque ones first: they need no order.
     scratch.transparent.clear();
     if !occluders.ids.is_empty() {
         open.test_here(world, &occluders.ids, &mut scratch.transparent, recorder);
     }
     if occluders.tree && open.mask.any() {
-        open.through_tree(world, scratch, recorder);
+        scratch.blockers.resize(world.lights.len(), None);
+        if let Some(k) = scratch.blockers[rays.light] {
+            open.test_here(world, &[k], &mut scratch.transparent, recorder);
+        }
+        if open.mask.any() {
+            open.through_tree(world, scratch, recorder);
+        }
+        scratch.blockers[rays.light] = open.blocker.or(scratch.blockers[rays.light]);
     }
     let seen = select3(open.mask, [L::one(); 3], zero);
     if scratch.transparent.is_empty() || !open.mask.any() {
@@ -150,6 +161,8 @@ fn dimmed<L: Lane>(
 struct Open<'r, L: Lane> {
     mask: L::Mask,
     rays: &'r ShadowRays<'r, L>,
+    /// What stopped the last of those that were stopped.
+    blocker: Option<u32>,
 }
 
 impl<L: Lane> Open<'_, L> {
@@ -182,8 +195,11 @@ impl<L: Lane> Open<'_, L> {
             self.rays.crossings(world, k, &mut met);
             met.blocked
         };
-        if recorder.is_on() && (self.mask & blocked).any() {
-            recorder.shaded(k);
+        if (self.mask & blocked).any() {
+            self.blocker = Some(k);
+            if recorder.is_on() {
+                recorder.shaded(k);
+            }
         }
         self.mask = self.mask & !blocked;
     }
@@ -258,9 +274,10 @@ impl<L: Lane> Open<'_, L> {
                         o: each3!(&o, x => one(x)),
                         l: each3!(&l, x => one(x)),
                         distance: one(&distance),
+                        light: self.rays.light,
                         touched: self.rays.touched,
                     };
-                    let open = Open { mask: Mask::splat(true), rays: &rays };
+                    let open = Open { mask: Mask::splat(true), rays: &rays, blocker: None };
                     let wide = ShadowRays::<L> {
                         source: L::splat(source[i].to_f64()),
                         part: L::splat(part[i].to_f64()),
@@ -268,6 +285,7 @@ impl<L: Lane> Open<'_, L> {
                         o: each3!(&o, x => L::splat(x[i].to_f64())),
                         l: each3!(&l, x => L::splat(x[i].to_f64())),
                         distance: L::splat(distance[i].to_f64()),
+                        light: self.rays.light,
                         touched: self.rays.touched,
                     };
                     let mut ray = InTree::<L> { world, open, wide: &wide, transparent, recorder };
@@ -275,6 +293,7 @@ impl<L: Lane> Open<'_, L> {
                     world.bvh.walk::<L::Boxes>(&spread, L::UNIT_ROUNDOFF, distance[i].to_f64(), &mut ray);
                     if !ray.open.mask.any() {
                         bits &= !(1 << i);
+                        self.blocker = ray.open.blocker;
                     }
                 }
                 self.mask = L::Mask::from_bits(bits);
@@ -324,9 +343,8 @@ impl<L: Lane> InTree<'_, L> {
         let blocked = met.blocked.bits();
         if blocked != 0 {
             self.open.mask = Mask::splat(false);
-            if let Some(&id) = ids.get(blocked.trailing_zeros() as usize)
-                && self.recorder.is_on()
-            {
+            self.open.blocker = ids.get(blocked.trailing_zeros() as usize).copied();
+            if let (Some(id), true) = (self.open.blocker, self.recorder.is_on()) {
                 self.recorder.shaded(id);
             }
         }
@@ -340,6 +358,11 @@ struct Blocked<R: Real> {
 }
 
 impl<R: Real> Visit<R> for Blocked<R> {
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        valid & !R::zero().lt(t)
+    }
+
     #[inline(always)]
     fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
         self.blocked = self.blocked | (valid & R::zero().lt(t) & t.lt(self.distance));

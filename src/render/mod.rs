@@ -6,6 +6,7 @@
 //! meet. [`certify`] bounds what all rays of a region see, and brings pixels to a stated error.
 
 mod assemble;
+mod ball;
 pub mod batch;
 mod belt;
 pub mod bounds;

@@ -66,6 +66,7 @@ struct Start<R: Real> {
 }
 
 impl<R: Real> Start<R> {
+    #[inline(always)]
     fn at_eye(d: [R; 3]) -> Start<R> {
         Start {
             o: [R::zero(); 3],
@@ -253,6 +254,11 @@ impl<R: Real> Visit<R> for Met<R> {
 }
 
 impl<R: Real> Visit<R> for Nearest<R> {
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        valid & !R::zero().lt(t)
+    }
+
     #[inline(always)]
     fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
         let nearer = t.lt(self.t) | (t.same(self.t) & self.current.lt(self.id));

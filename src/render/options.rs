@@ -1,8 +1,9 @@
 //! What is asked of the tracer, and what it gives back.
 
+use super::certify::Certificate;
 use crate::diag::Place;
 use crate::film::Film;
-use crate::scene::{AntiAliasing, MaterialId, NodeId, Precision, Settings};
+use crate::scene::{Accuracy, AntiAliasing, MaterialId, NodeId, Precision, Settings};
 
 /// How to trace: the scene's settings with the command line's changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,8 +12,13 @@ pub struct Options {
     pub width: u32,
     /// Pixels down of the whole picture.
     pub height: u32,
-    /// Rays a pixel.
+    /// Rays a pixel, where no accuracy is asked for.
     pub aa: AntiAliasing,
+    /// How close to the truth the picture has to come; then `aa` isn't looked at, and `precision` is 64 bits.
+    pub accuracy: Option<Accuracy>,
+    /// The distance of codes that will be written, as a share of white: an error is told with their rounding. 0 where colours
+    /// aren't rounded. Without an accuracy it isn't looked at.
+    pub quantum: f64,
     /// Reflections and transmissions one after another.
     pub max_depth: u32,
     /// Arithmetic.
@@ -58,6 +64,8 @@ impl Options {
             width: s.width,
             height: s.height,
             aa: s.aa,
+            accuracy: s.accuracy,
+            quantum: 1.0 / 255.0,
             max_depth: s.max_depth,
             precision: s.precision,
             crop: None,
@@ -123,6 +131,8 @@ pub struct Rendered {
     pub rays: RayCounts,
     /// Threads that worked.
     pub threads: usize,
+    /// What can be said of its error, where [`Options::accuracy`] asked.
+    pub certificate: Option<Box<Certificate>>,
 }
 
 /// A finished picture that went out row by row.

@@ -22,7 +22,7 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
     }
     (rays.source[0], rays.len) = (NONE, 1);
     let mut everything = Candidates::default();
-    everything.gather(world, |_| true, |_, _| true);
+    everything.gather(world, usize::MAX - 1, |_| true, |_, _| true);
     let mut hits = HitColumns::<f64>::default();
     nearest::<f64, false>(world, &everything, &rays, &mut hits, &mut Way::default());
     if hits.id[0] == NONE {
@@ -43,7 +43,7 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
     };
     let from = spawn_point(surface.p, normal, surface.offset);
     let mut scratch = Shadow::default();
-    let mut arriving = |light: &PointLight| {
+    let mut arriving = |number: usize, light: &PointLight| {
         let to = minus(light.at, from);
         let distance = dot(to, to).sqrt();
         let l = scaled(1.0 / distance, to);
@@ -51,10 +51,11 @@ pub fn probe(world: &World, options: &Options, x: u32, y: u32) -> Option<Probe> 
             return [0.0; 3];
         }
         let outward = if towards > 0.0 { 1.0 } else { 0.0 };
-        let rays = ShadowRays { source: id as f64, part, outward, o: from, l, distance, touched: &light.touched };
+        let touched = &light.touched;
+        let rays = ShadowRays { source: id as f64, part, outward, o: from, l, distance, light: number, touched };
         occlusion(world, &everything, &rays, Bool(true), &mut scratch, &mut Recorder::off())
     };
-    let lights = world.lights.iter().map(|l| (l.node, arriving(l))).collect();
+    let lights = world.lights.iter().enumerate().map(|(i, l)| (l.node, arriving(i, l))).collect();
     let (node, material) = world.origin(id);
     let point: [f64; 3] = std::array::from_fn(|i| surface.p[i] + world.eye[i]);
     let distance = t * dot(d, d).sqrt();

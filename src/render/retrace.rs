@@ -3,11 +3,12 @@
 
 use super::camera::PixelGrid;
 use super::census::{Change, PrimitiveKey};
+use super::certify::Certificate;
 use super::cull::{Shaft, margin};
-use super::dispatch::{render_tiles, tiles_of};
+use super::dispatch::{render, render_tiles, tiles_of};
 use super::footprint::Footprint;
 use super::material::MOST_SPACES;
-use super::options::{Crop, Options, Progress, RayCounts};
+use super::options::{Crop, Options, Progress, RayCounts, Rendered};
 use super::world::World;
 use crate::film::Film;
 use crate::math::Real;
@@ -51,6 +52,8 @@ pub struct Retraced {
     pub film: Arc<Film>,
     /// Rays traced for it.
     pub rays: RayCounts,
+    /// What can be said of its error, where that was asked for.
+    pub certificate: Option<Box<Certificate>>,
 }
 
 /// What has to be traced for a picture.
@@ -137,6 +140,11 @@ impl Retracer {
         progress: &dyn Progress,
         cancel: &AtomicBool,
     ) -> Option<Retraced> {
+        if options.accuracy.is_some() {
+            // No tile of it is kept: what a pixel took to be proved isn't recorded.
+            let Rendered { film, rays, certificate, .. } = render(&built.world, options, progress, cancel)?;
+            return Some(Retraced { film: Arc::new(film), rays, certificate });
+        }
         let Plan { tiles, film, mut footprints } = plan;
         let part = options.crop_or_all();
         let mut film = match film {
@@ -154,7 +162,7 @@ impl Retracer {
                 let spoilt = vec![false; tiles.len()];
                 let options = options.clone();
                 self.before = Some(Before { built, options, film: Arc::clone(&film), footprints, spoilt });
-                Some(Retraced { film, rays })
+                Some(Retraced { film, rays, certificate: None })
             }
             (None, Some(before)) if before.film.pixels.is_empty() => {
                 before.film = film;
@@ -224,7 +232,7 @@ impl<'w> Difference<'w> {
         let planes = || w.unbounded.iter().filter(|p| c.added_planes.contains(&p.id));
         let some = |keep: &dyn Fn(&super::bounds::Bounds) -> bool| {
             let mut found = false;
-            c.added.gather(keep, |_| {
+            c.added.gather(usize::MAX, keep, |_| {
                 found = true;
                 false
             });

@@ -1,6 +1,6 @@
 //! Shades the hits of one run: points and normals first, then light by light, then colour and the rays that follow.
 
-use super::batch::{Column, Column3, HitColumns, RayBatch, load3, store3};
+use super::batch::{Column, Column3, HitColumns, RayBatch, load3, put3, store3};
 use super::bounds::Bounds;
 use super::candidates::Candidates;
 use super::cull::{Shaft, margin};
@@ -181,12 +181,9 @@ impl<E: Elem> RunOfHits<'_, E> {
                 let surface = self.world.surface::<L, false>(id, ray, at);
                 let inside = L::zero().lt(dot(surface.n, ray.1));
                 let faced = FacedBy { inside };
-                let put = |old: &Column3<E>, new: [L; 3]| select3(here, new, load3(old, g));
-                let (p, n, ns) =
-                    (put(&s.p, surface.p), put(&s.n, faced.face(surface.n)), put(&s.ns, faced.face(surface.ns)));
-                store3(&mut s.p, g, p);
-                store3(&mut s.n, g, n);
-                store3(&mut s.ns, g, ns);
+                put3(&mut s.p, g, here, surface.p);
+                put3(&mut s.n, g, here, faced.face(surface.n));
+                put3(&mut s.ns, g, here, faced.face(surface.ns));
                 let inside = L::select(inside, L::one(), L::zero());
                 L::select(here, surface.offset, L::load(&s.offset[g..])).store(&mut s.offset[g..]);
                 L::select(here, inside, L::load(&s.inside[g..])).store(&mut s.inside[g..]);
@@ -197,11 +194,13 @@ impl<E: Elem> RunOfHits<'_, E> {
     /// What may stand between the hits, which lie in `points`, and each light.
     #[inline(always)]
     fn find_occluders(&self, points: &Bounds, margin: f64, occluders: &mut Vec<Candidates>) {
+        let rays = self.hits.groups.iter().map(|g| g.bits.count_ones() as usize).sum();
         occluders.resize_with(self.world.lights.len(), Candidates::default);
         for (light, occluders) in self.world.lights.iter().zip(occluders) {
             let shaft = Shaft::new(points, light.at, margin);
             occluders.gather(
                 self.world,
+                rays,
                 #[inline(always)]
                 |b| shaft.may_meet(b),
                 |n, offset| shaft.may_cross(points, n, offset),
@@ -220,6 +219,9 @@ impl<E: Elem> RunOfHits<'_, E> {
     ) {
         let (rays, m) = (self.hits.rays, self.surfacing);
         let ambient: [L; 3] = splat3(self.world.ambient);
+        // Asked once and not for each register.
+        let (glows, diffuses, shines) = (!m.ambient.is_zero(), !m.diffuse.is_zero(), !m.specular.is_zero());
+        let spawns = children.any(m);
         for group in self.hits.groups {
             let g = group.first as usize;
             let hit = LitHits::<L> {
@@ -233,28 +235,28 @@ impl<E: Elem> RunOfHits<'_, E> {
             };
             let (mut diffuse, mut specular) = ([L::zero(); 3], [L::zero(); 3]);
             if m.lit {
-                self.illuminate(group, &hit, s, (&mut diffuse, &mut specular), shadow_rays);
+                self.illuminate(group, &hit, s, (&mut diffuse, shines.then_some(&mut specular)), shadow_rays);
             }
             let spaces = &s.spaces;
             let mut value = [L::zero(); 3];
-            if !m.ambient.is_zero() || !m.diffuse.is_zero() {
+            if glows || diffuses {
                 let color = self.slot(m.color, &hit, spaces);
                 let share = self.slot(m.ambient, &hit, spaces);
                 let mut light = three!(c => share[c] * ambient[c]);
-                if !m.diffuse.is_zero() {
+                if diffuses {
                     let share = self.slot(m.diffuse, &hit, spaces);
                     light = three!(c => share[c].mul_add(diffuse[c], light[c]));
                 }
                 value = three!(c => color[c] * light[c]);
             }
-            if !m.specular.is_zero() {
+            if shines {
                 let share = self.slot(m.specular, &hit, spaces);
                 value = three!(c => share[c].mul_add(specular[c], value[c]));
             }
             let weight = if gathered.first { [L::one(); 3] } else { load3::<L>(&rays.weight, g) };
             gathered.add(group, &rays.slot, three!(c => weight[c] * value[c]));
 
-            if children.any(m) {
+            if spawns {
                 let (back, through) = (self.slot(m.reflect, &hit, spaces), self.slot(m.transmit, &hit, spaces));
                 let leaving = Leaving {
                     d: hit.d,
@@ -273,14 +275,14 @@ impl<E: Elem> RunOfHits<'_, E> {
         }
     }
 
-    /// Adds every light's share to the diffuse and specular sums.
+    /// Adds every light's share to the diffuse sum, and to the specular one where the material shines.
     #[inline(always)]
     fn illuminate<L: Lane<Elem = E>>(
         &self,
         group: &LaneGroup,
         hit: &LitHits<L>,
         s: &mut ShadeScratch<E>,
-        (diffuse, specular): (&mut [L; 3], &mut [L; 3]),
+        (diffuse, mut specular): (&mut [L; 3], Option<&mut [L; 3]>),
         shadow_rays: &mut u64,
     ) {
         let g = group.first as usize;
@@ -288,7 +290,7 @@ impl<E: Elem> RunOfHits<'_, E> {
         let o = spawn_point(hit.p, hit.n, hit.offset);
         let (source, part) = (L::load(&self.hits.hits.id[g..]), L::load(&self.hits.hits.part[g..]));
         let outward = L::one() - hit.inside;
-        let mut mirror: Option<([L; 3], L)> = None;
+        let mut mirror: Option<[L; 3]> = None;
         for (number, light) in self.world.lights.iter().enumerate() {
             let (at, color): ([L; 3], [L; 3]) = (splat3(light.at), splat3(light.color));
             // A light in this very surface grazes it: what rounding makes of the right angle doesn't count. (Such surfaces are
@@ -308,26 +310,26 @@ impl<E: Elem> RunOfHits<'_, E> {
                 continue;
             }
             *shadow_rays += front.bits().count_ones() as u64;
-            let rays = ShadowRays { source, part, outward, o, l, distance, touched: &light.touched };
+            let rays = ShadowRays { source, part, outward, o, l, distance, light: number, touched: &light.touched };
             let seen = occlusion(self.world, &s.occluders[number], &rays, front, &mut s.shadow, &mut s.recorder);
             let arrives: [L; 3] = three!(c => L::select(front, color[c] * seen[c], zero));
             let lambert = L::select(front, cosine, zero);
             *diffuse = three!(c => lambert.mul_add(arrives[c], diffuse[c]));
-            if !self.surfacing.specular.is_zero() {
-                let (r, length) = match mirror {
+            if let Some(specular) = &mut specular {
+                let r = match mirror {
                     Some(known) => known,
-                    None => (mirrored(hit.d, hit.ns), dot(hit.d, hit.d).sqrt()),
+                    None => mirrored(hit.d, hit.ns),
                 };
-                mirror = Some((r, length));
+                mirror = Some(r);
                 let along = dot(r, l);
                 if !(front & zero.lt(along)).any() {
                     continue;
                 }
-                let along = along / length;
+                let along = along / dot(hit.d, hit.d).sqrt();
                 let shininess = self.slot(self.surfacing.shininess, hit, &s.spaces)[0];
                 let high = power(along, shininess, self.surfacing.shininess);
                 let high = L::select(front & zero.lt(along), high, zero);
-                *specular = three!(c => high.mul_add(arrives[c], specular[c]));
+                **specular = three!(c => high.mul_add(arrives[c], specular[c]));
             }
         }
     }

@@ -128,6 +128,7 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         let grid = &self.grid;
         self.tracer.candidates.gather(
             self.world,
+            (tile.width * tile.height * self.side * self.side) as usize,
             #[inline(always)]
             |b| frustum.may_meet(b),
             |n, offset| grid.may_meet_plane(rect, n, offset, margin),

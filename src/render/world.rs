@@ -4,6 +4,7 @@
 //! never changes a pixel: where two surfaces coincide exactly, the same one is always in front, and an opaque one before one
 //! that light goes through.
 
+use super::ball::passing_by;
 use super::bounds::{Bounds, larger};
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
@@ -16,7 +17,7 @@ use super::ray::Own;
 use super::shape::primitive::Tables;
 use super::shape::{Kind, Mesh, Primitive, Surface, TriangleData, Visit};
 use super::touch::{lies_on, lies_on_triangle, neighbourhood};
-use crate::math::{Affine, Dd, Real};
+use crate::math::{Affine, Dd, Mask, Real};
 use crate::scene::range::{LARGEST_F32, SMALLEST_F32};
 use crate::scene::{MaterialId, NodeId};
 
@@ -118,6 +119,7 @@ impl World {
             let around = neighbourhood(light.at);
             let mut near: Vec<u32> = self.unbounded.iter().map(|p| p.id).collect();
             self.bvh.gather(
+                usize::MAX,
                 |b| b.overlaps(&around),
                 |id| {
                     near.push(id);
@@ -188,7 +190,7 @@ impl World {
         ids.iter().all(|id| own.contains(id)).then_some(mesh)
     }
 
-    /// Calls `visit` for every crossing of lines with surface `id`; see [`Primitive::crossings`].
+    /// Calls `visit` for every crossing of rays with surface `id` at t > 0, and for some behind; see [`Primitive::crossings`].
     #[inline(always)]
     pub(super) fn crossings<R: Real, const AT_EYE: bool>(
         &self,
@@ -198,7 +200,14 @@ impl World {
         visit: &mut impl Visit<R>,
     ) {
         if let Some(primitive) = self.primitives.get(id as usize) {
-            let visit = &mut Confined::new(self.confines(id), (o, d), visit);
+            let mut met = !passing_by::<R, AT_EYE>(primitive, &self.maps, (o, d));
+            if let Some(own) = &own {
+                met = met | own.here; // what went in must come out, wherever rounding puts the start
+            }
+            if !met.any() {
+                return;
+            }
+            let visit = &mut Confined::new(met, self.confines(id), (o, d), visit);
             return primitive.crossings::<R, AT_EYE>(self.tables(), o, d, own, visit);
         }
         let (mesh, k) = self.triangle(id);

@@ -7,8 +7,10 @@ pub struct Settings {
     pub width: u32,
     /// Pixels down, likewise.
     pub height: u32,
-    /// Rays a pixel.
+    /// Rays a pixel, where no accuracy is asked for.
     pub aa: AntiAliasing,
+    /// How close to the truth the picture has to come; as many rays as that takes.
+    pub accuracy: Option<Accuracy>,
     /// Reflections and transmissions that a camera ray may go through, one after another; 0 shows surfaces alone.
     pub max_depth: u32,
     /// Arithmetic of the tracer.
@@ -37,6 +39,32 @@ impl AntiAliasing {
     }
 }
 
+/// What is asked of a picture instead of a number of rays: an error, a time, or both, and then whichever is reached first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Largest error of any channel of any pixel, as a share of white after the sRGB curve, [`LEAST_ERROR`](Self::LEAST_ERROR) to
+    /// [`LARGEST_ERROR`](Self::LARGEST_ERROR): 2/255 are two codes of 8 bits. It is the distance from the pixel's true colour,
+    /// which is the mean over its square. `None` for the least that the time allows.
+    pub error: Option<f64>,
+    /// Seconds of tracing. `None` for as many as it takes.
+    pub time: Option<f64>,
+    /// Probability, between 0 and 1, with which a pixel keeps the error where that can't be proved but is bounded.
+    pub confidence: f64,
+}
+
+impl Accuracy {
+    /// Two thirds of a code of 16 bits, half of which is lost when codes are rounded.
+    pub const LEAST_ERROR: f64 = 1e-5;
+    /// Half of all there is between black and white.
+    pub const LARGEST_ERROR: f64 = 0.5;
+    /// Seconds: less isn't enough for a picture's first ray.
+    pub const LEAST_TIME: f64 = 0.001;
+    /// A week.
+    pub const LONGEST_TIME: f64 = 604_800.0;
+    /// One pixel in a thousand may fail.
+    pub const CONFIDENCE: f64 = 0.999;
+}
+
 /// Arithmetic of the tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
@@ -53,6 +81,13 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { width: 640, height: 480, aa: AntiAliasing::Off, max_depth: 8, precision: Precision::F64 }
+        Settings {
+            width: 640,
+            height: 480,
+            aa: AntiAliasing::Off,
+            accuracy: None,
+            max_depth: 8,
+            precision: Precision::F64,
+        }
     }
 }

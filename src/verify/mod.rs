@@ -5,6 +5,7 @@
 //! [`Size::Long`].
 
 mod contact;
+mod coverage;
 mod draw;
 mod enclosure;
 mod energy;
@@ -24,6 +25,7 @@ pub mod torus;
 mod tree;
 mod watertight;
 
+pub use coverage::lower_limit;
 pub use histogram::Histogram;
 pub use outcome::{Bound, Figure, Outcome};
 pub use picture_check::{PictureCheck, Subject, hashed};

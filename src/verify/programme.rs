@@ -1,7 +1,7 @@
 //! The list of all checks.
 
 use super::picture_check::{self, PictureCheck};
-use super::{Check, contact, enclosure, energy, quadric, respawn, tangent, torus, tree, watertight};
+use super::{Check, contact, coverage, enclosure, energy, quadric, respawn, tangent, torus, tree, watertight};
 
 /// The checks of kernels and formulas, which need no scene.
 pub fn programme() -> Vec<Check> {
@@ -15,10 +15,11 @@ pub fn programme() -> Vec<Check> {
         tree::CHECK,
         enclosure::CHECK,
         energy::CHECK,
+        coverage::CHECK,
     ]
 }
 
 /// The checks of whole pictures.
 pub fn pictures() -> Vec<PictureCheck> {
-    picture_check::ALL.to_vec()
+    picture_check::ALL.into_iter().chain([coverage::PICTURES]).collect()
 }

@@ -104,7 +104,7 @@ impl Maker<'_> {
 
         let encode_start = Instant::now();
         let film = rendered.film;
-        let file = png(&film, &recipe_of(&evaluated, &options, camera))?;
+        let file = png(&film, &recipe_of(&evaluated, &options, camera, rendered.certificate.as_deref()))?;
         let encode_time = encode_start.elapsed();
         if self.cancel.load(Relaxed) {
             return Ok(Made::Nothing);

@@ -18,6 +18,9 @@ use report::{Checked, Machine, Report, size_word};
 use std::io::{self, Write};
 use std::time::Instant;
 
+/// The checks of `--coverage`.
+const COVERAGE: [&str; 2] = ["coverage", "stated"];
+
 /// A check of either kind.
 #[derive(Clone, Copy)]
 enum Task {
@@ -50,9 +53,12 @@ impl Task {
 /// There is no check of that name, a scene is wrong or can't be read, or standard output fails.
 pub fn run(args: &VerifyArgs) -> Result<Exit, Stop> {
     let start = Instant::now();
-    let tasks = chosen(&args.only)?;
+    let tasks = match args.coverage {
+        true => chosen(&COVERAGE.map(String::from))?,
+        false => chosen(&args.only)?,
+    };
     let subjects = subjects(args, &tasks)?;
-    let size = if args.extremes { Size::Long } else { Size::Quick };
+    let size = if args.extremes || args.coverage { Size::Long } else { Size::Quick };
     let steps = Steps::new(tasks.len() as u64);
     let at_end = steps.clone();
     // Nothing is written, so nothing is left behind. Where there is no handler to be had, the system ends the program.
@@ -97,8 +103,12 @@ pub fn run(args: &VerifyArgs) -> Result<Exit, Stop> {
         writeln!(io::stdout(), "{text}")?;
     }
     if args.markdown {
-        let extremes = if args.extremes { " --extremes" } else { "" };
-        let text = table::markdown(&report, &format!("rtdsl verify{extremes}"));
+        let option = match (args.extremes, args.coverage) {
+            (true, _) => " --extremes",
+            (_, true) => " --coverage",
+            _ => "",
+        };
+        let text = table::markdown(&report, &format!("rtdsl verify{option}"));
         io::stdout().write_all(text.as_bytes())?;
     }
     Ok(if report.kept { Exit::Done } else { Exit::Unmet })

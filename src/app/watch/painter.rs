@@ -8,6 +8,7 @@ use super::interrupt::Unwhole;
 use super::show::{Coarse, Show};
 use super::teller::{Finished, Teller};
 use crate::app::Stop;
+use crate::app::accuracy;
 use crate::app::args::WatchArgs;
 use crate::app::picture::{fits, look, recipe_of};
 use crate::app::progress::Bar;
@@ -15,7 +16,7 @@ use crate::app::render::target;
 use crate::film::{Film, Format, Recipe};
 use crate::lang::{self, Dependency, Evaluated, Failure, Input, Memory, Request};
 use crate::render::{Built, Options, Plan, Retraced, Retracer};
-use crate::scene::Camera;
+use crate::scene::{Camera, Precision};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -185,6 +186,8 @@ impl<'w> Painter<'w> {
         let (camera, mut options) = look(&e, &self.args.view)?;
         let camera = camera.clone();
         options.threads = self.args.threads.map(|n| n as usize);
+        let format = self.output.as_ref().map_or(Format::PNG, |o| o.1);
+        self.args.accuracy.apply(&mut options, format, self.args.view.precision == Some(Precision::F32))?;
         if let Some((path, _)) = &self.output {
             target(path, &e)?;
         }
@@ -217,10 +220,10 @@ impl<'w> Painter<'w> {
             self.teller.coarse(s.text);
         }
         let render_start = Instant::now();
-        let Retraced { film, rays } = self.trace(built, s, plan, coarse, leash).ok_or(None)?;
+        let Retraced { film, rays, certificate } = self.trace(built, s, plan, coarse, leash).ok_or(None)?;
         let render_seconds = render_start.elapsed().as_secs_f64();
 
-        let recipe = recipe_of(&s.evaluated, &s.options, &s.camera);
+        let recipe = recipe_of(&s.evaluated, &s.options, &s.camera, certificate.as_deref());
         let png = Format::PNG;
         let shown = match self.show.is_on() {
             true => Some(encode(&film, png, &recipe, leash).ok_or(None)?.map_err(Stop::from)?),
@@ -252,6 +255,7 @@ impl<'w> Painter<'w> {
             rays: all,
             tiles,
             size: [film.width, film.height],
+            accuracy: certificate.as_deref().map(accuracy::line),
             out,
         };
         self.show.report(&finished, bytes);

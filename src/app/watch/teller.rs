@@ -39,6 +39,8 @@ pub struct Finished {
     pub tiles: (usize, usize),
     /// Pixels across and down.
     pub size: [u32; 2],
+    /// What can be said of its error, where that was asked for.
+    pub accuracy: Option<String>,
     /// The file, where there is one.
     pub out: Option<String>,
 }
@@ -92,6 +94,9 @@ impl Teller {
             f.why,
             words::thousands(f.rays)
         ));
+        if let Some(accuracy) = &f.accuracy {
+            self.line(accuracy);
+        }
     }
 
     /// What is wrong with the newest text, or worth a look.

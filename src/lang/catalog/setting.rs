@@ -5,7 +5,7 @@ use crate::lang::build::Build;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Run, Ty, Word, optional, required};
-use crate::scene::{AntiAliasing, Camera, Precision, Projection, Settings, range};
+use crate::scene::{Accuracy, AntiAliasing, Camera, Precision, Projection, Settings, range};
 
 pub const WORDS: &[Word] = &[
     Word {
@@ -68,6 +68,10 @@ pub const WORDS: &[Word] = &[
             ),
             optional("depth", Ty::Whole, Default::Number(8.0), "how many mirrors and glasses a ray may go through; glass sends two rays on from each surface, so each level may double the time")
                 .within(0.0, Settings::LARGEST_DEPTH as f64),
+            optional("error", Ty::Number, Default::Absent, "instead of `aa`: the largest error of a pixel, as in `2/255`; as many rays are sent as it takes")
+                .within(Accuracy::LEAST_ERROR, Accuracy::LARGEST_ERROR),
+            optional("time", Ty::Number, Default::Absent, "instead of `aa`: seconds; the picture gets as good as it can meanwhile, and says how good that is")
+                .within(Accuracy::LEAST_TIME, Accuracy::LONGEST_TIME),
             optional("precision", Ty::Choice(&["f64", "f32"]), Default::Text("f64"), "the arithmetic: 64 or 32 bits; 32 bits hold lengths from 1e-18 to 1e18"),
         ],
         doc: "How large and how good the picture is.",
@@ -168,6 +172,23 @@ fn render(host: &mut dyn Host, a: &[Value]) -> Outcome {
         settings.aa = *aa;
     }
     settings.max_depth = a.number(2) as u32;
-    settings.precision = if a.text(3) == "f32" { Precision::F32 } else { Precision::F64 };
+    let given = |i: usize| a.given(i).then(|| a.number(i));
+    let (error, time) = (given(3), given(4));
+    if error.is_some() || time.is_some() {
+        let (asked, word) = if error.is_some() { (3, "an `error`") } else { (4, "a `time`") };
+        if a.given(1) {
+            let fault = Fault::new(format!("a picture has {word} or an `aa`, not both"));
+            return Err(fault
+                .note("it sends as many rays as it takes, more of them where they are needed")
+                .on(1)
+                .into());
+        }
+        if a.text(5) == "f32" {
+            let fault = Fault::new(format!("a picture with {word} needs 64 bits"));
+            return Err(fault.note("what 32 bits lose isn't known").on(asked).into());
+        }
+        settings.accuracy = Some(Accuracy { error, time, confidence: Accuracy::CONFIDENCE });
+    }
+    settings.precision = if a.text(5) == "f32" { Precision::F32 } else { Precision::F64 };
     Ok(Value::None)
 }

@@ -65,79 +65,20 @@ macro_rules! register {
         }
 
         impl Real for $name {
-            type Mask = $mask;
-            type Single = f64;
-            type Fine = Dd;
-            const UNIT_ROUNDOFF: f64 = <$elem as Real>::UNIT_ROUNDOFF;
-            const LEAST: f64 = <$elem as Real>::LEAST;
-            #[inline(always)]
-            fn splat(x: f64) -> Self {
-                unsafe { $name($set(x as $elem)) }
-            }
-            #[inline(always)]
-            fn mul_add(self, b: Self, c: Self) -> Self {
-                unsafe { $name($fma(self.0, b.0, c.0)) }
-            }
-            #[inline(always)]
-            fn mul_sub(self, b: Self, c: Self) -> Self {
-                unsafe { $name($fms(self.0, b.0, c.0)) }
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                unsafe { $name($sqrt(self.0)) }
-            }
+            common!(
+                @arithmetic $name, $mask, $elem, $set, $fma, $fms, $sqrt, $and, $and_not, $or, $compare, $min, $max
+            );
             #[inline(always)]
             fn floor(self) -> Self {
                 // Scale 0, towards minus infinity.
                 unsafe { $name($round::<_MM_FROUND_TO_NEG_INF>(self.0)) }
             }
             #[inline(always)]
-            fn abs(self) -> Self {
-                unsafe { $name($and_not($set(-0.0), self.0)) }
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                unsafe { $name($or($and_not($set(-0.0), self.0), $and($set(-0.0), sign.0))) }
-            }
-            #[inline(always)]
-            fn lt(self, o: Self) -> $mask {
-                unsafe { $mask($compare::<_CMP_LT_OQ>(self.0, o.0)) }
-            }
-            #[inline(always)]
-            fn le(self, o: Self) -> $mask {
-                unsafe { $mask($compare::<_CMP_LE_OQ>(self.0, o.0)) }
-            }
-            #[inline(always)]
-            fn same(self, o: Self) -> $mask {
-                unsafe { $mask($compare::<_CMP_EQ_OQ>(self.0, o.0)) }
-            }
-            #[inline(always)]
             fn select(m: $mask, a: Self, b: Self) -> Self {
                 unsafe { $name($blend(m.0, b.0, a.0)) }
             }
-            /// The instruction gives its second operand where the two compare equal or either is NaN.
-            #[inline(always)]
-            fn min(self, o: Self) -> Self {
-                unsafe { $name($min(self.0, o.0)) }
-            }
-            #[inline(always)]
-            fn max(self, o: Self) -> Self {
-                unsafe { $name($max(self.0, o.0)) }
-            }
             common!(@each $mask, $width);
-            #[inline(always)]
-            fn alone<T: Task>(task: T) -> T::Output {
-                unsafe { super::alone(task) }
-            }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-                #[inline(never)]
-                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
-                    f()
-                }
-                unsafe { compiled_for_it(f) }
-            }
+            common!(@functions "avx512f,avx512dq,avx512vl,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
         }
 
         impl Lane for $name {

@@ -100,6 +100,78 @@ macro_rules! common {
             }
         }
     };
+    // Of `Real`: what is one instruction each, by the same names.
+    (@arithmetic $name:ident, $mask:ident, $elem:ident, $set:ident, $fma:ident, $fms:ident, $sqrt:ident, $and:ident,
+     $and_not:ident, $or:ident, $compare:ident, $min:ident, $max:ident) => {
+        type Mask = $mask;
+        type Single = f64;
+        type Fine = Dd;
+        const UNIT_ROUNDOFF: f64 = <$elem as Real>::UNIT_ROUNDOFF;
+        const LEAST: f64 = <$elem as Real>::LEAST;
+        #[inline(always)]
+        fn splat(x: f64) -> Self {
+            unsafe { $name($set(x as $elem)) }
+        }
+        #[inline(always)]
+        fn mul_add(self, b: Self, c: Self) -> Self {
+            unsafe { $name($fma(self.0, b.0, c.0)) }
+        }
+        #[inline(always)]
+        fn mul_sub(self, b: Self, c: Self) -> Self {
+            unsafe { $name($fms(self.0, b.0, c.0)) }
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            unsafe { $name($sqrt(self.0)) }
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            unsafe { $name($and_not($set(-0.0), self.0)) }
+        }
+        #[inline(always)]
+        fn copysign(self, sign: Self) -> Self {
+            unsafe { $name($or($and_not($set(-0.0), self.0), $and($set(-0.0), sign.0))) }
+        }
+        #[inline(always)]
+        fn lt(self, o: Self) -> $mask {
+            unsafe { $mask($compare::<_CMP_LT_OQ>(self.0, o.0)) }
+        }
+        #[inline(always)]
+        fn le(self, o: Self) -> $mask {
+            unsafe { $mask($compare::<_CMP_LE_OQ>(self.0, o.0)) }
+        }
+        #[inline(always)]
+        fn same(self, o: Self) -> $mask {
+            unsafe { $mask($compare::<_CMP_EQ_OQ>(self.0, o.0)) }
+        }
+        /// The instruction gives its second operand where the two compare equal or either is NaN.
+        #[inline(always)]
+        fn min(self, o: Self) -> Self {
+            unsafe { $name($min(self.0, o.0)) }
+        }
+        #[inline(always)]
+        fn max(self, o: Self) -> Self {
+            unsafe { $name($max(self.0, o.0)) }
+        }
+    };
+    // Of `Real`: functions of their own, compiled for these instructions.
+    (@functions $instructions:literal) => {
+        #[inline(always)]
+        fn alone<T: Task>(task: T) -> T::Output {
+            // SAFETY: see the module.
+            unsafe { super::alone(task) }
+        }
+        #[inline(always)]
+        fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+            #[target_feature(enable = $instructions)]
+            #[inline(never)]
+            fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
+                f()
+            }
+            // SAFETY: see the module.
+            unsafe { compiled_for_it(f) }
+        }
+    };
     (@each $mask:ident, $width:literal) => {
         #[inline(always)]
         fn each<const N: usize, const M: usize>(v: [Self; N], f: impl FnMut([f64; N]) -> [f64; M]) -> [Self; M] {

@@ -1,6 +1,7 @@
 //! One number alone among registers: as `f64` and `f32` are, but on the instructions of those it came from. For rays that go
 //! their own way through a tree.
 
+use super::common;
 use crate::math::real::{Bool, Task};
 use crate::math::{Dd, Lane, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -102,21 +103,7 @@ macro_rules! one {
                 }
                 out
             }
-            #[inline(always)]
-            fn alone<T: Task>(task: T) -> T::Output {
-                // SAFETY: see the module above.
-                unsafe { super::alone(task) }
-            }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-                #[inline(never)]
-                fn compiled_for_it<T>(f: impl FnOnce() -> T) -> T {
-                    f()
-                }
-                // SAFETY: see the module above.
-                unsafe { compiled_for_it(f) }
-            }
+            common!(@functions "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
         }
 
         impl Lane for $name {

@@ -113,16 +113,25 @@ impl Bvh {
     }
 
     /// Calls `found` for every primitive in whose leaf's box, and all boxes around it, `keep` sees something; stops when
-    /// `found` says false.
+    /// `found` says false. Gives whether it came to an end within `most` nodes.
     #[inline(always)]
-    pub fn gather(&self, mut keep: impl FnMut(&Bounds) -> bool, mut found: impl FnMut(u32) -> bool) {
+    pub fn gather(
+        &self,
+        most: usize,
+        mut keep: impl FnMut(&Bounds) -> bool,
+        mut found: impl FnMut(u32) -> bool,
+    ) -> bool {
         if self.nodes.is_empty() {
-            return;
+            return true;
         }
-        let (mut stack, mut depth) = ([0u32; walk::ROOM], 1);
+        let (mut stack, mut depth, mut left) = ([0u32; walk::ROOM], 1, most);
         while depth > 0 {
+            if left == 0 {
+                return false;
+            }
+            left -= 1;
             depth -= 1;
-            let Some(node) = self.nodes.get(stack[depth] as usize) else { return };
+            let Some(node) = self.nodes.get(stack[depth] as usize) else { return true };
             for (slot, child) in node.children() {
                 if !keep(&self.fit.grow(&node.box_of(slot))) {
                     continue;
@@ -136,11 +145,12 @@ impl Bvh {
                 }
                 for id in self.ids_of(child) {
                     if !found(*id) {
-                        return;
+                        return true;
                     }
                 }
             }
         }
+        true
     }
 
     /// Calls `test(primitive)` once for every primitive whose leaf's box a ray meets before its `t_max`, nearer boxes first.
@@ -294,6 +304,7 @@ mod tests {
             let region = Bounds::around([0, 1, 2].map(|c| random(k, 90 + c) * 100.0 - 50.0), [4.0; 3]);
             let mut found = Vec::new();
             tree.gather(
+                usize::MAX,
                 |b| b.overlaps(&region),
                 |id| {
                     found.push(id);

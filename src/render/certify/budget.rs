@@ -9,8 +9,8 @@ use super::target::Target;
 use crate::math::hash::KeyedHash;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
-/// Samples for certainty, for each pixel of the picture on the average: as many as a grid of 11×11.
-const AVERAGE: u64 = 128;
+/// Samples for certainty, for each pixel of the picture on the average: as many as a grid of 23×23.
+const AVERAGE: u64 = 512;
 
 /// One pixel of so many by so many is tried.
 const STEP: u32 = 8;

@@ -85,7 +85,7 @@ impl<'w> Certifier<'w> {
     ) -> Option<Vec<u32>> {
         let mut ids: Vec<u32> =
             self.world.unbounded.iter().filter(|p| keep_plane(p.n, p.offset)).map(|p| p.id).collect();
-        self.world.bvh.gather(keep, |id| {
+        self.world.bvh.gather(usize::MAX, keep, |id| {
             ids.push(id);
             ids.len() <= most
         });

@@ -26,11 +26,14 @@ const EDGE: f64 = 0.5;
 /// The same, where looks are to make samples affordable.
 const SLOW: f64 = 0.7;
 
-/// With more than that left of it, looks are of no use where samples are `FAR` from affordable.
+/// With more than that left of it, looks are of no use where samples are far from affordable.
 const STUCK: f64 = 0.9;
 
-/// So many times.
-const FAR: f64 = 32.0;
+/// So many times is far, in a picture of many such pixels.
+const FAR_OF_MANY: f64 = 1.0;
+
+/// So many times is far where they are few, so that each may take its time.
+const FAR_OF_FEW: f64 = 1024.0;
 
 /// What looks at a pixel came to.
 pub struct Looked {
@@ -122,7 +125,8 @@ impl Outlook {
     fn is_good(&self, target: &Target, affordable: u32) -> bool {
         let (done, most) = (self.evaluations as f64, target.evaluations as f64);
         let (samples, affordable) = (self.samples, affordable as f64);
-        if samples > FAR * affordable && done > 1.0 && self.shrunk > STUCK {
+        let far = if affordable >= target.samples as f64 { FAR_OF_FEW } else { FAR_OF_MANY };
+        if samples > far * affordable && done > 1.0 && self.shrunk > STUCK {
             return false;
         }
         if done < smaller(FIRST_LOOKS, samples / PRICE) {

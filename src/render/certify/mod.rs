@@ -4,6 +4,7 @@
 //! evaluated for all rays of a region at once, as [`Form`](crate::math::Form)s, and the region is cut where a test is undecided. What no cut
 //! can tell apart is charged. See [`Certifier::region`].
 
+mod asked;
 mod bound;
 mod budget;
 mod bundle;
@@ -19,6 +20,7 @@ mod pixel;
 mod polygon;
 mod sampler;
 mod sheet;
+mod sketch;
 mod sobol;
 mod study;
 mod summary;
@@ -29,6 +31,8 @@ mod texels;
 mod visible;
 mod waves;
 
+pub use asked::Certificate;
+pub(super) use asked::render;
 pub use bound::Bound;
 pub use certifier::Certifier;
 pub use picture::{Control, certify, refine};

@@ -47,7 +47,7 @@ pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [P
     let affordable = affordable(&certifier, options, target, control.cancel);
     let blocks = blocks(options, pixels);
     let next = AtomicUsize::new(0);
-    crew(useful(options.threads, blocks.len()), || {
+    crew(threads(options), || {
         let mut work = Work {
             certifier: &certifier,
             sampler: &mut *sampler(world, options, control.cancel),
@@ -69,6 +69,14 @@ pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [P
         }
     });
     !control.cancel.load(Relaxed)
+}
+
+/// Threads that are of use for so many blocks.
+pub(super) fn threads(options: &Options) -> usize {
+    let part = options.crop_or_all();
+    let across =
+        |from: u32, length: u32| (from as usize + length as usize).div_ceil(BLOCK as usize) - (from / BLOCK) as usize;
+    useful(options.threads, across(part.x, part.width) * across(part.y, part.height))
 }
 
 /// Pixels of a square of [`BLOCK`]² that are asked for.

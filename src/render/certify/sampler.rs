@@ -41,14 +41,15 @@ impl<'w, L: Lane> LaneSampler<'w, L> {
         LaneSampler { world, grid, tracer }
     }
 
-    /// Finds what rays through `rect` may meet; false where that is nothing.
+    /// Finds what so many rays through `rect` may meet; false where that is nothing.
     #[inline(always)]
-    fn find_candidates(&mut self, rect: [f64; 4]) -> bool {
+    fn find_candidates(&mut self, rect: [f64; 4], rays: usize) -> bool {
         let margin = margin(f64::EPSILON);
         let frustum = self.grid.frustum(rect, margin);
         let grid = &self.grid;
         self.tracer.candidates.gather(
             self.world,
+            rays,
             #[inline(always)]
             |b| frustum.may_meet(b),
             |n, offset| grid.may_meet_plane(rect, n, offset, margin),
@@ -78,7 +79,7 @@ impl<L: Lane> Sampler for LaneSampler<'_, L> {
     fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3])) {
         let found = L::vectorize(
             #[inline(always)]
-            || self.find_candidates(rect),
+            || self.find_candidates(rect, points.len()),
         );
         if !found {
             (0..points.len()).for_each(|i| seen(i, self.world.background));

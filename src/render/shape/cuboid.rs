@@ -1,7 +1,7 @@
 //! The box: the overlap of three slabs around its centre.
 
 use super::{Point, Visit};
-use crate::math::Real;
+use crate::math::{Mask, Real};
 use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// Parts are numbered 2·axis for the lower face, 2·axis + 1 for the upper one.
@@ -31,8 +31,22 @@ pub(super) fn crossings<R: Real>(half: [f64; 3], ray: &LocalRay<R>, own: Option<
         leave = Wall::select(!level & second.tau.lt(leave.tau), second, leave);
     }
     let crosses = inside & enter.tau.le(leave.tau);
-    let (way_in, t_out, way_out) = convex_exit(&own, crosses, leave.to / leave.d, crosses);
-    visit.crossing(enter.to / enter.d, enter.part, way_in);
+    if own.is_none() && !crosses.any() {
+        return; // the line passes by
+    }
+    let t_in = enter.to / enter.d;
+    let Some(own) = own else {
+        visit.crossing(t_in, enter.part, crosses);
+        if visit.needs_further(t_in, crosses).any() {
+            visit.crossing(t_in.max(leave.to / leave.d), leave.part, crosses);
+        }
+        return;
+    };
+    // Of an edge, rounding may put the way out before the way in, and then it would matter whether it was asked for.
+    let t_out = leave.to / leave.d;
+    let t_out = R::select(own.here, t_out, t_in.max(t_out));
+    let (way_in, t_out, way_out) = convex_exit(&Some(own), crosses, t_out, crosses);
+    visit.crossing(t_in, enter.part, way_in);
     visit.crossing(t_out, leave.part, way_out);
 }
 

@@ -13,7 +13,7 @@ mod torus;
 pub mod triangle;
 mod tube;
 
-use crate::math::Real;
+use crate::math::{Mask, Real};
 pub use mesh::Mesh;
 pub use primitive::{Kind, Primitive, Surface};
 pub use sphere::Ball;
@@ -33,6 +33,14 @@ pub const TOP: f64 = 2.0;
 pub trait Visit<R: Real> {
     /// A crossing at `t`, on `part`, in the lanes of `valid`; elsewhere the numbers mean nothing.
     fn crossing(&mut self, t: R, part: R, valid: R::Mask);
+
+    /// The lanes in which a crossing further on may matter, when one at `t` was found in the lanes of `valid`. In others kernels
+    /// save its root and may show it or not, whatever comes of the lanes beside: so it has to be said of each lane by itself.
+    #[inline(always)]
+    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
+        let _ = (t, valid);
+        R::Mask::splat(true)
+    }
 }
 
 impl<R: Real, F: FnMut(R, R, R::Mask)> Visit<R> for F {

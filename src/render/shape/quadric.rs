@@ -72,9 +72,16 @@ pub struct Roots<R: Real> {
 const DOUBT: f64 = (1 << 12) as f64;
 
 /// Solves for the crossings of `ray`'s line with `form` = 0 from its point `m` at `t0`, which is near the shape. Of rays that
-/// start on the quadric itself, the lanes of `own`, one root is exactly 0.
+/// start on the quadric itself, the lanes of `own`, one root is exactly 0. `needs_further` is told the t of the smaller roots, and where
+/// they are real, and says in which lanes the larger one is needed; in others it is infinite.
 #[inline(always)]
-pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadric, own: Option<R::Mask>) -> Roots<R> {
+pub fn roots<R: Real>(
+    ray: &LocalRay<R>,
+    (t0, m): (R, [R; 3]),
+    form: &impl Quadric,
+    own: Option<R::Mask>,
+    needs_further: impl FnOnce(R, R::Mask) -> R::Mask,
+) -> Roots<R> {
     let (zero, d) = (R::zero(), ray.d);
     let Coefficients { a, b, c, sizes } = form.coefficients(m, d);
     let disc = b.difference_of_products(b, a, c);
@@ -89,21 +96,29 @@ pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadr
         let always_inside = constant & c.le(zero);
         return Roots { lo: Crossing::never(-1.0), hi: Crossing::never(1.0), real, a, always_inside };
     }
-    let (x, y) = pair(a, b, c, disc);
-    let (mut lo, mut hi) = (Crossing { tau: x, t: t0 + x }, Crossing { tau: y, t: t0 + y });
+    let pair = Pair::new(a, b, c, disc);
+    let x = pair.smaller();
+    let (mut lo, mut hi) = (Crossing { tau: x, t: t0 + x }, Crossing::never(1.0));
+    // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
+    // numbers, and its sign means nothing yet.
+    let needed = (real & is_small(lo.t, t0)) | needs_further(lo.t, real);
+    if needed.any() {
+        let y = pair.larger();
+        // Rounding may exchange two that are all but one. Not in lanes that don't need the other: whether it is computed there
+        // depends on the lanes beside.
+        let (x, y) = (R::select(needed, x.min(y), x), R::select(needed, x.max(y), hi.tau));
+        (lo, hi) = (Crossing { tau: x, t: t0 + x }, Crossing { tau: y, t: t0 + y });
+    }
     let mut found = Roots { lo, hi, real, a, always_inside: constant & c.le(zero) };
 
-    // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
-    // numbers. Such rays start near the surface, where the coefficients at the ray's own origin are the good ones. An
-    // eighth loses at most three of 53 bits.
-    let (eight, shift) = (R::splat(8.0), t0.abs());
-    let near_lo = real & (lo.t.abs() * eight).lt(shift);
-    let near_hi = real & (hi.t.abs() * eight).lt(shift);
+    // Such rays start near the surface, where the coefficients at the ray's own origin are the good ones.
+    let (near_lo, near_hi) = (real & is_small(lo.t, t0), real & is_small(hi.t, t0));
     if (near_lo | near_hi).any() {
         let k = form.coefficients(ray.o, d);
-        let (x, y) = pair(k.a, k.b, k.c, k.b.difference_of_products(k.b, k.a, k.c));
-        lo.t = R::select(near_lo, x, lo.t);
-        hi.t = R::select(near_hi, y, hi.t);
+        let pair = Pair::new(k.a, k.b, k.c, k.b.difference_of_products(k.b, k.a, k.c));
+        let (x, y) = (pair.smaller(), pair.larger());
+        lo.t = R::select(near_lo, x.min(y), lo.t);
+        hi.t = R::select(near_hi, x.max(y), hi.t);
         (found.lo, found.hi) = (lo, hi);
     }
     if doubt.any() {
@@ -115,14 +130,47 @@ pub fn roots<R: Real>(ray: &LocalRay<R>, (t0, m): (R, [R; 3]), form: &impl Quadr
     found
 }
 
-/// The two roots of a·τ² + 2·b·τ + c, in order; an infinite one where a = 0.
+/// The two roots of a·τ² + 2·b·τ + c: q/a and c/q, with the q of which no digits cancel. An infinite one where a = 0.
+struct Pair<R: Real> {
+    a: R,
+    c: R,
+    q: R,
+    /// Where q/a, which lies further from 0, is the smaller one.
+    first: R::Mask,
+}
+
+impl<R: Real> Pair<R> {
+    #[inline(always)]
+    fn new(a: R, b: R, c: R, disc: R) -> Pair<R> {
+        let zero = R::zero();
+        let q = -(b + R::select(zero.lt(disc), disc, zero).sqrt().copysign(b));
+        let (down, falling) = (q.lt(zero), a.lt(zero));
+        Pair { a, c, q, first: (down & !falling) | (!down & falling) }
+    }
+
+    #[inline(always)]
+    fn smaller(&self) -> R {
+        self.root(self.first)
+    }
+
+    #[inline(always)]
+    fn larger(&self) -> R {
+        self.root(!self.first)
+    }
+
+    /// q/a in the lanes of `by_a`, c/q elsewhere.
+    #[inline(always)]
+    fn root(&self, by_a: R::Mask) -> R {
+        let root = R::select(by_a, self.q, self.c) / R::select(by_a, self.a, self.q);
+        let double = !by_a & self.q.same(R::zero()); // at 0: c is 0 too
+        R::select(double, R::zero(), root)
+    }
+}
+
+/// Whether `t` is much smaller than `t0`: under an eighth, which loses at most three of 53 bits.
 #[inline(always)]
-fn pair<R: Real>(a: R, b: R, c: R, disc: R) -> (R, R) {
-    let zero = R::zero();
-    let q = -(b + R::select(zero.lt(disc), disc, zero).sqrt().copysign(b));
-    let x = q / a;
-    let y = R::select(q.same(zero), zero, c / q); // a double root at 0: c is 0 too
-    (x.min(y), x.max(y))
+fn is_small<R: Real>(t: R, t0: R) -> R::Mask {
+    (t.abs() * R::splat(8.0)).lt(t0.abs())
 }
 
 /// The same roots from the ray's exact origin in a finer scalar, in the lanes of `doubt`.
@@ -137,7 +185,7 @@ fn judged_again<R: Real>(ray: &LocalRay<R>, t0: R, form: &impl Quadric, doubt: R
     let [lo_tau, lo_t, hi_tau, hi_t, real] = R::again(doubt, given, rough_numbers, |v| {
         let (whole, nothing) = (|k: usize| three!(i => v[k + i] + v[k + 3 + i]), [Real::zero(); 3]);
         let exact = LocalRay { o: whole(0), o_lo: nothing, d: whole(6), d_lo: nothing };
-        let x = roots(&exact, exact.nearest(), form, None);
+        let x = roots(&exact, exact.nearest(), form, None, |_, _| Mask::splat(true));
         let real = Real::select(x.real, Real::one(), Real::zero());
         [x.lo.t - v[12], x.lo.t, x.hi.t - v[12], x.hi.t, real]
     });
@@ -184,7 +232,7 @@ mod tests {
 
     /// With the unit sphere.
     fn of(ray: &LocalRay<f64>) -> Roots<f64> {
-        roots(ray, ray.nearest(), &Ball { r: 1.0 }, None)
+        roots(ray, ray.nearest(), &Ball { r: 1.0 }, None, |_, _| Mask::splat(true))
     }
 
     #[test]

@@ -25,7 +25,14 @@ impl Quadric for Ball {
 #[inline(always)]
 pub(super) fn crossings<R: Real>(r: f64, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
     let part = R::splat(SIDE);
-    let x = roots(ray, ray.nearest(), &Ball { r }, on_side(&own, SIDE));
+    let x = roots(
+        ray,
+        ray.nearest(),
+        &Ball { r },
+        on_side(&own, SIDE),
+        #[inline(always)]
+        |t, real| visit.needs_further(t, real),
+    );
     let (way_in, t_out, way_out) = convex_exit(&own, x.real, x.hi.t, x.real);
     visit.crossing(x.lo.t, part, way_in);
     visit.crossing(t_out, part, way_out);

@@ -61,7 +61,15 @@ pub(super) fn crossings<R: Real>(tube: &Tube, ray: &LocalRay<R>, own: Option<Own
     let within = t_axis.min(t_bottom.max(t_top)).max(t_bottom.min(t_top));
     let t0 = R::select(level, t_axis, within);
     let from = ray.moved(t0);
-    let x = roots(ray, (t0, each3!(from, m => m.0)), tube, on_side(&own, SIDE));
+    let near = (t0, each3!(from, m => m.0));
+    let x = roots(
+        ray,
+        near,
+        tube,
+        on_side(&own, SIDE),
+        #[inline(always)]
+        |_, _| R::Mask::splat(true),
+    );
     if !(x.real | x.always_inside).any() && own.is_none() {
         return; // the line passes by
     }

@@ -100,7 +100,7 @@ fn plain(c: [f64; 3]) -> Look {
 }
 
 /// Every shape that certificates cover, some turned or stretched, on a checkered floor between a mirror and panes, under two lights.
-fn every_shape() -> Scene {
+pub(in crate::render::certify) fn every_shape() -> Scene {
     let mut b = Builder::new();
     let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
     let floor = PatternKind::Checker { a: x, b: y, size: 10.0 };

@@ -1,0 +1,45 @@
+//! The dials of a sweep: one list for the command line, the sweep and what is written of it.
+
+use clap::ValueEnum;
+use serde::Serialize;
+
+/// A dial: what is turned while all else stays as the scene has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// The largest error that is asked for.
+    Error,
+    /// Rays a pixel.
+    Samples,
+    /// The time that tracing may take.
+    Time,
+    /// Reflections and transmissions one after another.
+    Depth,
+    /// 64 bits or 32.
+    Precision,
+    /// Bounds of regions, or samples alone.
+    Certificates,
+}
+
+impl Axis {
+    /// All, in the order in which they are swept.
+    pub const ALL: [Axis; 6] =
+        [Axis::Error, Axis::Samples, Axis::Time, Axis::Depth, Axis::Precision, Axis::Certificates];
+
+    /// Its name on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Axis::Error => "error",
+            Axis::Samples => "samples",
+            Axis::Time => "time",
+            Axis::Depth => "depth",
+            Axis::Precision => "precision",
+            Axis::Certificates => "certificates",
+        }
+    }
+
+    /// Whether a further turn of it is meant to bring the picture nearer to the truth, in the order in which it is swept.
+    pub fn is_a_budget(self) -> bool {
+        matches!(self, Axis::Error | Axis::Samples | Axis::Time | Axis::Depth)
+    }
+}
