@@ -102,6 +102,23 @@ impl Bound {
         Bound { sum: scaled(self.sum), range: scaled(self.range), form }
     }
 
+    /// The light times shares from one end of `w` to the other, which may be another at each point.
+    pub fn shared(self, p: &Polygon, w: [Span; 3]) -> Bound {
+        if w.iter().all(|s| s[0] == s[1]) {
+            return self.times(w.map(|s| s[0]));
+        }
+        let range = [0, 1, 2].map(|i| product(self.range[i], w[i]));
+        let plain = Bound::somewhere(p.area(), range);
+        // Of light and shares that are nowhere negative the integral is no more than the light's by the largest share, and no
+        // less than by the least.
+        let sum = |i: usize| match self.range[i][0] >= 0.0 && w[i][0] >= 0.0 {
+            true => meet(plain.sum[i], product(self.sum[i], w[i])),
+            false => plain.sum[i],
+        };
+        let form = self.form.map(|f| [0, 1, 2].map(|i| f[i] * Form::between(w[i][0], w[i][1])));
+        Bound { sum: [0, 1, 2].map(sum), range, form }
+    }
+
     /// What holds of `whole`, which was cut into the polygons of `a` and `b`, which overlap. Each point's light is that of one of
     /// both; the other's at the points of the strip has to be taken out: the strip's area times something among the values.
     pub fn joined(whole: &Polygon, (pa, a): (&Polygon, Bound), (pb, b): (&Polygon, Bound)) -> Bound {

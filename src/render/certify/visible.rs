@@ -30,8 +30,9 @@ impl<'c> Study<'c> {
     fn looked_at(&mut self, p: &Polygon, ray: &Bundle, depth: u32) -> Bound {
         let scene = self.scene;
         let Some(candidates) = ray.candidates(scene, p) else { return self.unknown(p) };
+        self.ceiling = scene.ceiling_among(&candidates, depth);
         let mut sheets = Sheets { scene, p, ray, found: Vec::new() };
-        for id in candidates {
+        for &id in &candidates {
             if sheets.add(id).is_err() {
                 return self.unknown(p);
             }
@@ -39,7 +40,7 @@ impl<'c> Study<'c> {
         let mut found = sheets.found;
         let key = |s: &Sheet| if s.nearness.is_known() { s.nearness.c } else { f64::INFINITY };
         found.sort_by(|a, b| key(b).total_cmp(&key(a)).then(a.id.cmp(&b.id)));
-        let view = View { ray, sheets: &found, depth };
+        let view = View { ray, sheets: &found, candidates: &candidates, depth };
         self.gathered(p, &view, 0, &mut Hits::default())
     }
 
@@ -114,7 +115,8 @@ impl<'c> Study<'c> {
                 let mut rest = hits.clone();
                 rest.met.retain(|&i| i != first);
                 let behind = View { depth: view.depth - 1, ..*view };
-                let outer = std::mem::replace(&mut self.ceiling, self.scene.ceiling(behind.depth));
+                let outer =
+                    std::mem::replace(&mut self.ceiling, self.scene.ceiling_among(view.candidates, behind.depth));
                 let bound = self.in_order(p, &behind, &rest);
                 self.ceiling = outer;
                 light.plus(bound.times(share))
@@ -128,6 +130,8 @@ impl<'c> Study<'c> {
 struct View<'v> {
     ray: &'v Bundle,
     sheets: &'v [Sheet],
+    /// The surfaces that they may meet.
+    candidates: &'v [u32],
     depth: u32,
 }
 

@@ -89,6 +89,12 @@ impl Builder {
         self.0.roots.push(node);
     }
 
+    /// The material made last.
+    fn last(&mut self) -> &mut Material {
+        let last = self.0.materials.len() - 1;
+        &mut self.0.materials[last]
+    }
+
     fn light(&mut self, at: DVec3, color: [f64; 3]) {
         let node = self.node(NodeKind::Light(Light { at, color: Color(color), power: 1.0 }), None);
         self.0.roots.push(node);
@@ -162,5 +168,43 @@ fn rings() -> Scene {
     b.turned(ring(DVec3::ZERO, v(1.0, 1.0, 0.0), 1.0), plain([0.5; 3]), turn);
     b.shape(Shape::Sphere { at: v(0.5, 0.2, -16.0), r: 0.8 }, plain([0.9, 0.8, 0.1]));
     b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
+    b.0
+}
+
+/// What is known by range alone: bumps, shares that patterns decide, noise, glass, before a wall and over a floor of them.
+fn by_range() -> Scene {
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
+    let noise = |a, b, seed| PatternKind::Noise { a, b, octaves: 3, seed };
+    let look = |color| Look { color, specular: 0.2, reflect: 0.0, transmit: 0.0 };
+    let (none, some) = (b.gray(0.0), b.gray(0.5));
+    let share = b.pattern(noise(none, some, 5));
+    let checks = b.pattern(PatternKind::Checker { a: some, b: none, size: 0.7 });
+    let heights = b.pattern(PatternKind::Brick { mortar: none, brick: some, size: [1.6, 0.7], gap: 0.1 });
+    let bumps = b.pattern(noise(none, some, 6));
+
+    b.shape(Shape::Plane { through: v(0.0, -3.0, 0.0), normal: DVec3::Y }, look(noise(x, y, 1)));
+    b.last().reflect = share;
+    b.shape(Shape::Plane { through: v(0.0, 0.0, -40.0), normal: DVec3::Z }, look(noise(y, x, 2)));
+    b.last().bump = Some(heights);
+    b.shape(Shape::Sphere { at: v(-3.0, -1.0, -22.0), r: 2.0 }, look(PatternKind::Constant(Color([0.7, 0.4, 0.2]))));
+    (b.last().diffuse, b.last().specular, b.last().reflect) = (share, checks, checks);
+    b.shape(
+        Shape::Sphere { at: v(1.0, -0.5, -19.0), r: 1.5 },
+        Look { transmit: 0.9, ..look(PatternKind::Constant(Color([0.0; 3]))) },
+    );
+    b.last().ior = Some(1.5);
+    b.shape(
+        Shape::Sphere { at: v(4.5, -1.0, -24.0), r: 2.0 },
+        Look { reflect: 0.3, ..look(PatternKind::Cells { a: x, b: y, seed: 3 }) },
+    );
+    (b.last().bump, b.last().shininess) = (Some(bumps), share);
+    b.shape(
+        Shape::Disc { at: v(-1.0, 2.5, -18.0), normal: v(0.3, 0.2, 1.0), r: 1.8, hole: 0.0 },
+        look(PatternKind::Constant(Color([0.3, 0.5, 0.4]))),
+    );
+    b.last().transmit = checks;
+    b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
+    b.light(v(-20.0, 10.0, 5.0), [0.2, 0.2, 0.4]);
     b.0
 }

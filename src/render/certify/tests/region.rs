@@ -184,6 +184,36 @@ fn what_passes_a_ring_by_is_known() {
 }
 
 #[test]
+fn what_is_known_by_range_is() {
+    let scene = by_range();
+    let found = studied(&scene, (160, 90), 0..1_500, Weakened::No);
+    assert_eq!((found.outside, found.means), (0, 0), "{found:?}");
+    let narrow = studied(&scene, (160, 90), 0..1_500, Weakened::Range);
+    assert!(narrow.outside > 0, "{narrow:?}");
+}
+
+/// A surface's own range is what is left of the scene's where more isn't known.
+#[test]
+fn what_lies_elsewhere_widens_nothing() {
+    let range = |scene: &Scene, rect| {
+        let world = World::build(scene, &scene.cameras[0]);
+        let options = Options { width: 32, height: 32, ..Options::from_settings(&scene.settings) };
+        Certifier::new(&world, &options).region(rect).range
+    };
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.5; 3], [0.1; 3]);
+    let heights = b.pattern(PatternKind::Noise { a: x, b: y, octaves: 2, seed: 1 });
+    b.shape(Shape::Plane { through: v(0.0, 0.0, -9.0), normal: DVec3::Z }, plain([0.5; 3]));
+    b.last().bump = Some(heights);
+    b.light(v(3.0, 4.0, 5.0), [0.5; 3]);
+    let alone = range(&b.0, [4.0, 4.0, 9.0, 9.0]);
+    // Behind the camera, and far brighter.
+    b.shape(Shape::Sphere { at: v(0.0, 0.0, 60.0), r: 1.0 }, Look { reflect: 1.0, ..plain([9.0; 3]) });
+    assert_eq!(alone, range(&b.0, [4.0, 4.0, 9.0, 9.0]));
+    assert!(alone.iter().all(|r| r[0] >= 0.09 && r[1] < 0.6), "its ambient light at least: {alone:?}");
+}
+
+#[test]
 fn what_isnt_covered_is_unknown_within_its_range() {
     let mut b = Builder::new();
     b.shape(Shape::Torus { at: v(0.0, 0.0, -20.0), r: 2.0, tube: 0.5, axis: DVec3::Z }, plain([0.5; 3]));
