@@ -140,7 +140,7 @@ struct Gives {
 }
 
 /// A few roundings of each step, upwards.
-pub(super) const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
+const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// By material: what it gives back; by how often rays go on: where the light lies that they see. Every sum of some of
 /// their parts lies there, too.

@@ -1,11 +1,10 @@
 //! The light of a surface: Phong's terms as forms, its mirror image, and what of each light arrives.
 
-use super::super::bounds::larger;
 use super::super::material::Slot;
 use super::super::optics::mirrored;
 use super::bound::{Bound, Span};
 use super::bundle::{Bundle, bounds_of, from_constant};
-use super::certifier::{Certifier, UP};
+use super::certifier::Certifier;
 use super::met::Met;
 use super::polygon::Polygon;
 use super::sheet::{Sheet, Sheets};
@@ -75,10 +74,7 @@ impl<'c> Study<'c> {
             return own;
         }
         if goes_through {
-            // Where it goes isn't followed; how much of it comes back is known.
-            let most = |s: Span| larger(s[0].abs(), s[1].abs());
-            let share = three!(c => (most(shares.reflect[c]) + most(shares.transmit[c])) * UP);
-            return own.plus(Bound::within(p, self.scene.ceiling(depth - 1)).times(share));
+            return own.plus(self.bent_light(p, &met, (shares.reflect, shares.transmit), depth - 1));
         }
         let back = match met.at {
             Some(o) if met.bent.is_none() && met.surfacing.bump.is_none() => {

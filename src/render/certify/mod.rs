@@ -5,6 +5,7 @@
 //! can tell apart is charged. See [`Certifier::region`].
 
 mod asked;
+mod bent;
 mod blend;
 mod bound;
 mod budget;

@@ -1,5 +1,6 @@
 //! The study of one region: what all its steps share, and the cut in two.
 
+use super::super::bounds::larger;
 use super::bound::{Bound, Span};
 use super::bundle::Bundle;
 use super::certifier::Certifier;
@@ -8,6 +9,9 @@ use crate::math::Form;
 
 /// Most cuts of one region. A region that needs more is better divided: pieces cost as much as a smaller region does.
 const MOST_PIECES: u32 = 96;
+
+/// Rays of less weight at glass aren't followed. Straight on it mirrors some 4 %: once, that is looked at.
+const FAINT: f64 = 1.0 / 64.0;
 
 /// What the study of one region knows and has spent.
 pub struct Study<'c> {
@@ -19,6 +23,10 @@ pub struct Study<'c> {
     pub undivided: bool,
     /// Whether a mean was taken that is the better known the wider the region is.
     pub in_rows: bool,
+    /// Surfaces of glass so far.
+    pub bends: u32,
+    /// The most weight of the rays at hand.
+    weight: f64,
     /// Cuts so far.
     pieces: u32,
 }
@@ -29,7 +37,7 @@ pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> B
 impl<'c> Study<'c> {
     /// With nothing known and nothing spent.
     pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
-        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, pieces: 0 }
+        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, bends: 0, weight: 1.0, pieces: 0 }
     }
 
     /// What is known of the light in a rectangle of the picture: left, top, right, bottom.
@@ -46,6 +54,25 @@ impl<'c> Study<'c> {
     /// What is sure without looking.
     pub fn unknown(&self, p: &Polygon) -> Bound {
         Bound::within(p, self.ceiling)
+    }
+
+    /// The light of rays that go on up to `depth` times more and carry these shares: looked for unless it is faint.
+    pub fn onward(
+        &mut self,
+        p: &Polygon,
+        shares: [Form; 3],
+        depth: u32,
+        look: impl FnOnce(&mut Self) -> Bound,
+    ) -> Bound {
+        let most = shares.iter().map(|f| p.range(*f)).fold(0.0, |m, (lo, hi)| larger(m, larger(lo.abs(), hi.abs())));
+        let weight = self.weight * most;
+        if !(weight >= FAINT) {
+            return Bound::within(p, self.scene.ceiling(depth)).through(p, shares);
+        }
+        let outer = std::mem::replace(&mut self.weight, weight);
+        let bound = look(self).limited(p, self.scene.ceiling(depth));
+        self.weight = outer;
+        bound.through(p, shares)
     }
 
     /// Goes both ways of the test g ≥ 0, each on its side of the cut.

@@ -139,7 +139,8 @@ impl View<'_> {
     /// Whether sheet number `hit` surely hides `other` on `p`.
     fn hides(&self, study: &Study<'_>, p: &Polygon, hit: usize, other: &Sheet) -> bool {
         let hit = &self.sheets[hit];
-        study.scene.world.surfacing(hit.id).transmit.is_zero() && p.range(hit.nearness).0 > p.range(other.nearness).1
+        let opaque = study.scene.straight_through(hit.id).is_none_or(|share| share == [0.0; 3]);
+        opaque && p.range(hit.nearness).0 > p.range(other.nearness).1
     }
 
     /// Whether of one shape's two sheets, if both are met, `a` comes first, or it doesn't matter: a convex shape is entered once

@@ -208,3 +208,26 @@ fn by_range() -> Scene {
     b.light(v(-20.0, 10.0, 5.0), [0.2, 0.2, 0.4]);
     b.0
 }
+
+/// Glass of every closed shape over a checkered floor, before a ball.
+fn glasses() -> Scene {
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
+    b.shape(
+        Shape::Plane { through: v(0.0, -3.0, 0.0), normal: DVec3::Y },
+        Look { color: PatternKind::Checker { a: x, b: y, size: 3.0 }, ..plain([0.0; 3]) },
+    );
+    b.shape(Shape::Sphere { at: v(0.0, 1.0, -40.0), r: 4.0 }, plain([0.8, 0.3, 0.2]));
+    let shapes = [
+        Shape::Sphere { at: v(0.0, -0.5, -20.0), r: 2.0 },
+        Shape::Box { from: v(3.0, -2.9, -22.0), to: v(5.5, 0.5, -19.0) },
+        Shape::Cylinder { from: v(-4.0, -2.9, -20.0), to: v(-3.6, 1.0, -21.0), r: 1.2, caps: true },
+        Shape::Disc { at: v(2.2, 2.5, -17.0), normal: v(0.3, 0.2, 1.0), r: 1.0, hole: 0.0 },
+    ];
+    for shape in shapes {
+        b.shape(shape, Look { specular: 0.5, reflect: 0.02, transmit: 0.95, ..plain([0.0; 3]) });
+        b.last().ior = Some(1.5);
+    }
+    b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
+    b.0
+}

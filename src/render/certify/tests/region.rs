@@ -192,6 +192,18 @@ fn what_is_known_by_range_is() {
     assert!(narrow.outside > 0, "{narrow:?}");
 }
 
+#[test]
+fn what_glass_bends_is_followed() {
+    let scene = glasses();
+    let found = studied(&scene, (160, 90), 0..1_500, Weakened::No);
+    assert_eq!((found.outside, found.means), (0, 0), "{found:?}");
+    let world = World::build(&scene, &scene.cameras[0]);
+    let options = Options { width: 160, height: 90, ..Options::from_settings(&scene.settings) };
+    // Through the middle of the ball: a quarter of what the scene can give.
+    let bound = Certifier::new(&world, &options).region([79.0, 46.0, 79.5, 46.5]);
+    assert!(bound.range.iter().all(|r| r[1] - r[0] < 0.4), "{bound:?}");
+}
+
 /// A surface's own range is what is left of the scene's where more isn't known.
 #[test]
 fn what_lies_elsewhere_widens_nothing() {
