@@ -8,7 +8,7 @@ use super::polygon::Polygon;
 use super::study::Study;
 use crate::math::real::{dot, three};
 use crate::math::tri::Tri;
-use crate::math::{Form, Real};
+use crate::math::Form;
 
 /// Most surfaces of glass in one study: each sends rays two ways.
 const MOST: u32 = 24;
