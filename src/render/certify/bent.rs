@@ -6,9 +6,9 @@ use super::bundle::{Bundle, Start};
 use super::met::Met;
 use super::polygon::Polygon;
 use super::study::Study;
+use crate::math::Form;
 use crate::math::real::{dot, three};
 use crate::math::tri::Tri;
-use crate::math::Form;
 
 /// Most surfaces of glass in one study: each sends rays two ways.
 const MOST: u32 = 24;

@@ -1,8 +1,8 @@
 //! Gradient noise over a region: its polynomial in each of the few lattice cells that the region lies in, to first order.
 
 use super::polygon::Polygon;
-use crate::math::noise::{STRETCH, component, in_cell};
 use crate::math::Form;
+use crate::math::noise::{STRETCH, component, in_cell};
 
 /// No value of gradient noise is further from 0. A gradient's product with the way from its corner is at most the sum of the two
 /// longest sides of that way; weighted as the corners are, such sums come to 1.0363 at most, where the sides are .355, .48 and .5; this is what a test
