@@ -36,6 +36,7 @@ POVRAY = (
     (["+AM1", "+R9", "+A0.0"], 30),
 )
 GRIDS = (1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32)
+ADAPTIVE = (4, 8, 16, 32, 64, 256)
 TIMES = ("50ms", "100ms", "150ms", "200ms", "300ms", "400ms", "600ms", "1s")
 ERRORS = (32, 16, 8, 4, 2, 1)
 
@@ -141,6 +142,8 @@ def measure(args, desk):
 
     for n in GRIDS:
         add(f"grid {n} × {n}", "grid", lambda: ours(["--aa", f"grid:{n}"])["seconds"]["render"])
+    for n in ADAPTIVE:
+        add(f"adaptive {n}", "adaptive", lambda: ours(["--aa", f"adaptive:{n}"])["seconds"]["render"])
     for time in TIMES:
         add(f"`--time {time}`", "time", lambda: ours(["--time", time])["seconds"]["render"])
     for e in ERRORS:

@@ -29,15 +29,20 @@ pub fn size(s: &str) -> Result<(u32, u32), String> {
     Ok((w, h))
 }
 
-/// `off` or `grid:3`.
+/// `off`, `grid:3` or `adaptive:16`.
 pub fn anti_aliasing(s: &str) -> Result<AntiAliasing, String> {
     if s == "off" {
         return Ok(AntiAliasing::Off);
     }
-    let n = s.strip_prefix("grid:").ok_or("write `off`, or `grid:N` as in `grid:2`")?;
+    let (way, n) = s.split_once(':').unwrap_or((s, ""));
+    let (is, least, most, make): (_, _, _, fn(u32) -> AntiAliasing) = match way {
+        "grid" => ("the grid is", 1, AntiAliasing::LARGEST_GRID, AntiAliasing::Grid),
+        "adaptive" => ("the most rays of a pixel are", 2, AntiAliasing::MOST_RAYS, AntiAliasing::Adaptive),
+        _ => return Err("write `off`, `grid:N` as in `grid:2`, or `adaptive:N` as in `adaptive:16`".into()),
+    };
     match n.parse() {
-        Ok(n) if (1..=AntiAliasing::LARGEST_GRID).contains(&n) => Ok(AntiAliasing::Grid(n)),
-        _ => Err(format!("the grid is a whole number from 1 to {}, not `{n}`", AntiAliasing::LARGEST_GRID)),
+        Ok(n) if (least..=most).contains(&n) => Ok(make(n)),
+        _ => Err(format!("{is} a whole number from {least} to {most}, not `{n}`")),
     }
 }
 
@@ -176,7 +181,9 @@ mod tests {
             assert!(size(wrong).is_err(), "{wrong}");
         }
         assert_eq!(anti_aliasing("grid:32"), Ok(AntiAliasing::Grid(32)));
-        for wrong in ["grid:0", "grid:33", "grid", "on", "grid:-1"] {
+        assert_eq!(anti_aliasing("adaptive:1024"), Ok(AntiAliasing::Adaptive(1024)));
+        for wrong in ["grid:0", "grid:33", "grid", "on", "grid:-1", "adaptive:1", "adaptive:1025", "adaptive", "off:2"]
+        {
             assert!(anti_aliasing(wrong).is_err(), "{wrong}");
         }
         assert_eq!((max_error("2/255"), max_error("0.01")), (Ok(2.0 / 255.0), Ok(0.01)));

@@ -6,7 +6,7 @@ use super::sight::Sight;
 use super::{Exit, Stop};
 use crate::diag::{Diagnostic, Sources};
 use crate::render::{self, Feature, Options, World};
-use crate::scene::Camera;
+use crate::scene::{AntiAliasing, Camera};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
@@ -44,9 +44,10 @@ pub fn run(args: &ExplainArgs) -> Result<Exit, Stop> {
 
 fn heading(name: &str, camera: &Camera, options: &Options) -> String {
     let camera = camera.name.as_ref().map_or(String::new(), |n| format!(", camera `{n}`"));
-    let rays = match options.aa.side() {
-        1 => "1 ray a pixel".to_string(),
-        n => format!("{} rays a pixel", n * n),
+    let rays = match options.aa {
+        AntiAliasing::Adaptive(n) => format!("1 to {n} rays a pixel"),
+        aa if aa.side() == 1 => "1 ray a pixel".to_string(),
+        aa => format!("{} rays a pixel", aa.side() * aa.side()),
     };
     let instructions = render::instructions(options.instructions);
     let at_a_time = match render::rays_at_a_time(options.instructions, options.precision) {

@@ -55,7 +55,7 @@ impl Make<'_> {
     /// A file can't be made of it.
     pub fn picture(&self, format: Format) -> io::Result<Option<Made>> {
         if let Format::Png(depth, compression) = format
-            && self.options.accuracy.is_none()
+            && self.options.is_by_tiles()
         {
             return self.png(depth, compression);
         }

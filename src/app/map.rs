@@ -45,7 +45,9 @@ impl<'p> Map<'p> {
     /// # Errors
     /// The file can't be written.
     pub fn write(self, certificate: &Certificate, width: u32, recipe: &Recipe) -> Result<(), Stop> {
-        let pixels: Vec<[f32; 3]> = certificate.pixels.iter().map(|p| self.color(p, certificate.reached)).collect();
+        let pixel = |i| certificate.pixels.get(i).copied().unwrap_or(Pixel::unknown());
+        let color = |i| self.color(&pixel(i), certificate.reached);
+        let pixels: Vec<[f32; 3]> = (0..certificate.summary.pixels()).map(color).collect();
         let film = Film { width, height: pixels.len() as u32 / width.max(1), pixels };
         self.file
             .write(|out| film::encode(&film, self.format, recipe, out))

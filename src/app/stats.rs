@@ -70,7 +70,9 @@ impl AccuracyStats {
         let s = &c.summary;
         let worst = s.worst.iter().flatten().max_by(|a, b| a.codes.total_cmp(&b.codes));
         let place = |at: usize| [part.x + at as u32 % part.width, part.y + at as u32 / part.width];
-        let open = c.pixels.iter().filter(|p| !p.keeps(c.reached)).map(|p| p.codes / 255.0);
+        let open = c.pixels.iter().filter(|p| !p.keeps(c.reached)).map(|p| p.codes / 255.0).max_by(f64::total_cmp);
+        // Of what nothing is known may be as far off as black is from white.
+        let worst_open = if c.pixels.is_empty() && s.open > 0 { Some(1.0) } else { open };
         AccuracyStats {
             line: accuracy::line(c),
             asked_error: c.accuracy.error,
@@ -83,7 +85,7 @@ impl AccuracyStats {
             open: s.open,
             worst: s.worst_codes() / 255.0,
             worst_pixel: worst.map(|w| place(w.at)),
-            worst_open: open.max_by(f64::total_cmp),
+            worst_open,
             evaluations: c.summary.evaluations,
             samples: c.summary.samples,
         }

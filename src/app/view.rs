@@ -89,11 +89,12 @@ pub fn settings_line(options: &Options, camera: &Camera) -> String {
     line
 }
 
-/// `off` or `grid:N`.
+/// `off`, `grid:N` or `adaptive:N`.
 pub fn aa_word(aa: AntiAliasing) -> String {
     match aa {
         AntiAliasing::Off => "off".to_string(),
         AntiAliasing::Grid(n) => format!("grid:{n}"),
+        AntiAliasing::Adaptive(n) => format!("adaptive:{n}"),
     }
 }
 

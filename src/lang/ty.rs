@@ -137,7 +137,7 @@ impl Ty {
             Ty::Pattern => "a pattern".into(),
             Ty::List => "a list".into(),
             Ty::Function => "a function".into(),
-            Ty::AntiAliasing => "`off` or `grid(n)`".into(),
+            Ty::AntiAliasing => "`off`, `grid(n)` or `adaptive(n)`".into(),
         }
     }
 }

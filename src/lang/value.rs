@@ -203,6 +203,9 @@ impl Value {
             Value::AntiAliasing(AntiAliasing::Grid(n)) => {
                 let _ = write!(out, "grid({n})");
             }
+            Value::AntiAliasing(AntiAliasing::Adaptive(n)) => {
+                let _ = write!(out, "adaptive({n})");
+            }
             Value::Function(_) | Value::Builtin(_) => out.push_str("function"),
             Value::Pattern(_) => out.push_str("pattern"),
             Value::Material(_) => out.push_str("material"),

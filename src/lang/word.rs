@@ -122,6 +122,11 @@ pub(super) trait Host<'c> {
 }
 
 impl Word {
+    /// Whether it sets something for the whole picture; ways of anti-aliasing are values that `render` takes.
+    pub(super) fn sets_something(&self) -> bool {
+        self.kind == Kind::Setting && !matches!(self.name, "grid" | "adaptive")
+    }
+
     /// `sphere takes: at, r, mat, name`.
     pub fn takes(&self) -> String {
         if self.params.is_empty() {

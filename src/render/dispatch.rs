@@ -4,18 +4,18 @@
 //! library that stands in for it, only faster.
 
 use super::belt::{Belt, Watchman};
-use super::certify;
-use super::certify::{LaneSampler, Sampler};
+use super::certify::{self, LaneSampler, Sampler};
 use super::crew::{crew, useful};
 use super::footprint::{Footprint, Recorder};
 use super::options::{Crop, Instructions, Options, Progress, RayCounts, Rendered, Streamed};
+use super::sketch;
 use super::tile::TileWorker;
 use super::world::World;
 use crate::film::Film;
 use crate::math::Lane;
 #[cfg(target_arch = "x86_64")]
 use crate::math::lane;
-use crate::scene::Precision;
+use crate::scene::{AntiAliasing, Precision};
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -23,8 +23,10 @@ use std::sync::{Mutex, PoisonError};
 /// Traces the picture; `None` where `cancel` was set meanwhile. Its bits depend on `world` and on size, anti-aliasing or error,
 /// depth and precision of `options`, on nothing else unless time is limited.
 pub fn render(world: &World, options: &Options, progress: &dyn Progress, cancel: &AtomicBool) -> Option<Rendered> {
-    if let Some(accuracy) = options.accuracy {
-        return certify::render(world, options, accuracy, (progress, cancel));
+    match (options.accuracy, options.aa) {
+        (Some(accuracy), _) => return certify::render(world, options, accuracy, (progress, cancel)),
+        (None, AntiAliasing::Adaptive(rays)) => return sketch::render(world, options, rays, (progress, cancel)),
+        _ => {}
     }
     let part = options.crop_or_all();
     let mut film = Film::new(part.width, part.height);
@@ -45,7 +47,7 @@ pub fn stream(
     (pixel_bytes, develop): (usize, Develop<'_>),
     take: &mut (dyn FnMut(&[u8]) -> io::Result<()> + Send),
 ) -> io::Result<Option<Streamed>> {
-    if options.accuracy.is_some() {
+    if !options.is_by_tiles() {
         // Its pixels aren't ready in any order.
         let Some(rendered) = render(world, options, progress, cancel) else { return Ok(None) };
         let mut bytes = Vec::new();
@@ -71,7 +73,7 @@ pub fn stream(
 /// Adds the bytes of pixels to what is there.
 pub type Develop<'d> = &'d (dyn Fn(&[[f32; 3]], &mut Vec<u8>) + Sync);
 
-/// Traces the tiles marked in `tiles`, in the order of [`tiles_of`], into `film`, and leaves in `footprints` what each
+/// Traces the tiles marked in `tiles`, in the order of [`Options::tiles`], into `film`, and leaves in `footprints` what each
 /// depended on.
 pub fn render_tiles(
     world: &World,
@@ -86,7 +88,7 @@ pub fn render_tiles(
 }
 
 /// A tracer of any points of the picture, in 64-bit numbers, until `cancel` is set.
-pub fn sampler<'w>(world: &'w World, options: &Options, cancel: &'w AtomicBool) -> Box<dyn Sampler + 'w> {
+pub fn sampler<'w>(world: &'w World, options: &Options, cancel: &'w AtomicBool) -> Box<dyn Sampler + Send + 'w> {
     match Build::of(options.instructions) {
         Build::Common => Box::new(LaneSampler::<f64>::new(world, options, cancel)),
         #[cfg(target_arch = "x86_64")]
@@ -94,18 +96,6 @@ pub fn sampler<'w>(world: &'w World, options: &Options, cancel: &'w AtomicBool) 
         #[cfg(target_arch = "x86_64")]
         Build::Avx512 => Box::new(LaneSampler::<lane::F64x8>::new(world, options, cancel)),
     }
-}
-
-/// The tiles of a picture, row by row.
-pub fn tiles_of(options: &Options) -> Vec<Crop> {
-    let (part, side) = (options.crop_or_all(), options.tile_side());
-    let start = |from: u32, length: u32| (0..length.div_ceil(side)).map(move |k| from + k * side);
-    let size = |at: u32, from: u32, length: u32| side.min(from + length - at);
-    let row = |y: u32| {
-        let height = size(y, part.y, part.height);
-        start(part.x, part.width).map(move |x| Crop { x, y, width: size(x, part.x, part.width), height })
-    };
-    start(part.y, part.height).flat_map(row).collect()
 }
 
 /// The instructions that `asked` comes to on this machine, in words: `AVX-512`, `AVX2 and FMA`, or `common`.
@@ -274,7 +264,7 @@ impl Work<'_> {
     }
 }
 
-/// Cuts `film` into the tiles of [`tiles_of`], those of them that are wanted.
+/// Cuts `film` into the tiles of [`Options::tiles`], those of them that are wanted.
 fn jobs<'f>(
     options: &Options,
     film: &'f mut Film,
@@ -283,7 +273,7 @@ fn jobs<'f>(
 ) -> Vec<Mutex<Job<'f>>> {
     let (part, side) = (options.crop_or_all(), options.tile_side() as usize);
     let mut footprints = footprints.map(|all| all.iter_mut());
-    let tiles = tiles_of(options).into_iter();
+    let tiles = options.tiles().into_iter();
     let mut jobs: Vec<Job<'f>> = tiles
         .map(|tile| {
             let footprint = footprints.as_mut().and_then(Iterator::next);

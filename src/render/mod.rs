@@ -3,7 +3,8 @@
 //! [`World::build`] takes from a scene what its picture requires; [`render`] traces it tile by tile; [`probe`] tells what one
 //! pixel sees. Within: `shape/` holds the kernels, one a file, each written once for every scalar; `bvh`, `cull` and `candidates` find
 //! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
-//! meet. [`certify`] bounds what all rays of a region see, and brings pixels to a stated error.
+//! meet. [`certify`] bounds what all rays of a region see, and brings pixels to a stated error; a `sketch` sends more rays where
+//! neighbours differ.
 
 mod assemble;
 mod ball;
@@ -41,10 +42,13 @@ mod run;
 mod search;
 mod shade;
 pub mod shape;
+mod sketch;
 mod slabs;
+mod sobol;
 mod span;
 mod spawn;
 mod standing;
+mod supersampler;
 mod surface_pattern;
 mod texture;
 mod tile;

@@ -78,6 +78,24 @@ impl Options {
     pub fn tile_side(&self) -> u32 {
         self.tile.clamp(1, 16)
     }
+
+    /// The tiles of the picture, row by row.
+    pub fn tiles(&self) -> Vec<Crop> {
+        let (part, side) = (self.crop_or_all(), self.tile_side());
+        let start = |from: u32, length: u32| (0..length.div_ceil(side)).map(move |k| from + k * side);
+        let size = |at: u32, from: u32, length: u32| side.min(from + length - at);
+        let row = |y: u32| {
+            let height = size(y, part.y, part.height);
+            start(part.x, part.width).map(move |x| Crop { x, y, width: size(x, part.x, part.width), height })
+        };
+        start(part.y, part.height).flat_map(row).collect()
+    }
+
+    /// Whether tiles are made one by one, each for itself, in one go.
+    pub fn is_by_tiles(&self) -> bool {
+        self.accuracy.is_none() && !matches!(self.aa, AntiAliasing::Adaptive(_))
+    }
+
     /// The part that is made, written out.
     pub fn crop_or_all(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })

@@ -5,7 +5,7 @@ use super::camera::PixelGrid;
 use super::census::{Change, PrimitiveKey};
 use super::certify::Certificate;
 use super::cull::{Shaft, margin};
-use super::dispatch::{render, render_tiles, tiles_of};
+use super::dispatch::{render, render_tiles};
 use super::footprint::Footprint;
 use super::material::MOST_SPACES;
 use super::options::{Crop, Options, Progress, RayCounts, Rendered};
@@ -78,7 +78,7 @@ impl Plan {
     /// Pixels to trace.
     pub fn pixels(&self, options: &Options) -> u64 {
         let pixels = |(t, _): (Crop, &bool)| t.width as u64 * t.height as u64;
-        tiles_of(options).into_iter().zip(&self.tiles).filter(|t| *t.1).map(pixels).sum()
+        options.tiles().into_iter().zip(&self.tiles).filter(|t| *t.1).map(pixels).sum()
     }
     /// The picture before, of which some tiles stay; `None` where there is none of this view.
     pub fn film(&self) -> Option<&Arc<Film>> {
@@ -98,7 +98,7 @@ impl Retracer {
     /// Finds out what has to be traced for the picture of `built`. Where `cancel` is set meanwhile it ends soon, with more to
     /// trace than needs be.
     pub fn plan(&self, built: &Built, options: &Options, cancel: &AtomicBool) -> Plan {
-        let tiles = tiles_of(options);
+        let tiles = options.tiles();
         let from = self.before.as_ref().filter(|b| {
             let (old, new) = (&b.built.world, &built.world);
             // The number of threads doesn't matter.
@@ -140,8 +140,8 @@ impl Retracer {
         progress: &dyn Progress,
         cancel: &AtomicBool,
     ) -> Option<Retraced> {
-        if options.accuracy.is_some() {
-            // No tile of it is kept: what a pixel took to be proved isn't recorded.
+        if !options.is_by_tiles() {
+            // No tile of it is kept: what a pixel depended on isn't recorded.
             let Rendered { film, rays, certificate, .. } = render(&built.world, options, progress, cancel)?;
             return Some(Retraced { film: Arc::new(film), rays, certificate });
         }

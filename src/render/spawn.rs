@@ -1,6 +1,6 @@
 //! The rays that leave a surface: mirrored and transmitted.
 
-use super::batch::RayBatch;
+use super::batch::{PADDING, RayBatch};
 use super::material::Surfacing;
 use super::optics::{dielectric, mirrored};
 use super::shape::primitive::spawn_point;
@@ -16,6 +16,31 @@ pub struct Children<'a, E: Elem> {
     pub transmitted: &'a mut RayBatch<E>,
     /// Whether the recursion may go on.
     pub spawn: bool,
+    /// What becomes of rays that carry next to nothing.
+    pub faint: &'a mut Faint,
+}
+
+/// Rays that aren't followed, because all that they could see would change next to nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Faint {
+    /// The largest weight of such a ray, in every channel; 0 leaves out those alone that carry nothing.
+    pub most: f64,
+    /// The sum of their weights, of the largest channel of each, in units of 2⁻³²: a whole number is the same in whatever order
+    /// rays are traced.
+    pub lost: u64,
+}
+
+impl Faint {
+    /// Units of the sum in a weight of 1.
+    pub const UNIT: f64 = (1u64 << 32) as f64;
+
+    /// Adds the weights of a register's rays that aren't followed.
+    #[inline(never)] // few are, and none where nothing is asked for
+    fn lose<E: Elem>(&mut self, weights: &[E], which: u32) {
+        for (_, w) in (0..).zip(weights).filter(|(i, _)| which >> i & 1 != 0) {
+            self.lost = self.lost.saturating_add((w.to_f64() * Faint::UNIT).ceil() as u64);
+        }
+    }
 }
 
 /// Hits of one register, as the rays that leave them see them.
@@ -72,33 +97,39 @@ impl<E: Elem> Children<'_, E> {
             let tilted = mirrored(hit.d, hit.ns);
             let out = L::zero().lt(dot(tilted, hit.n));
             let d = select3(out, tilted, mirrored(hit.d, hit.n));
-            push(self.mirrored, hit, spawn_point(hit.p, hit.n, hit.offset), d, back, outside, live);
+            push(self.mirrored, hit, spawn_point(hit.p, hit.n, hit.offset), d, (back, self.faint), outside, live);
         }
         if m.lets_through() {
             let live = live & dot(onward, hit.n).lt(L::zero());
-            push(self.transmitted, hit, spawn_point(hit.p, hit.n, -hit.offset), onward, through, hit.inside, live);
+            let o = spawn_point(hit.p, hit.n, -hit.offset);
+            push(self.transmitted, hit, o, onward, (through, self.faint), hit.inside, live);
         }
     }
 }
 
-/// Appends those of `live` that carry any weight: from `o` along `d`, with a share of `w`. `outward` is 1 where they leave to the
-/// outside.
+/// Appends those of `live` that carry more than `faint` weight: from `o` along `d`, with a share of `w`. `outward` is 1 where they leave
+/// to the outside.
 #[inline(always)]
 fn push<L: Lane>(
     batch: &mut RayBatch<L::Elem>,
     hit: &Leaving<L>,
     o: [L; 3],
     d: [L; 3],
-    w: [L; 3],
+    (w, faint): ([L; 3], &mut Faint),
     outward: L,
     live: L::Mask,
 ) {
-    let zero = L::zero();
     // Mirrors that amplify, face to face, would leave the range of numbers.
     let most = L::splat(BRIGHTEST);
     let w = three!(c => (hit.weight[c] * w[c]).min(most).max(-most));
-    let nothing = w[0].same(zero) & w[1].same(zero) & w[2].same(zero);
-    let live = live & !nothing;
+    let size = w[0].abs().max(w[1].abs()).max(w[2].abs());
+    let left = live & size.le(L::splat(faint.most));
+    if faint.most > 0.0 && left.any() {
+        let mut lanes = [L::Elem::default(); PADDING];
+        size.store(&mut lanes);
+        faint.lose(&lanes, left.bits());
+    }
+    let live = live & !left;
     let count = live.bits().count_ones() as usize;
     if count == 0 {
         return;

@@ -13,7 +13,7 @@ use super::nearest::nearest;
 use super::options::RayCounts;
 use super::run::{LaneGroup, Run, Runs};
 use super::shade::{Hits, ShadeScratch, shade};
-use super::spawn::Children;
+use super::spawn::{Children, Faint};
 use super::way::Way;
 use super::world::World;
 use crate::math::real::{Mask, three};
@@ -40,6 +40,8 @@ pub struct Tracer<'w, L: Lane> {
     packed: Run,
     /// Rays traced so far.
     pub counts: RayCounts,
+    /// Rays that aren't followed.
+    pub faint: Faint,
 }
 
 /// The rays of one depth. Batches are exchanged with the depth below, hence the boxes.
@@ -71,6 +73,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
             runs: Runs::new(world.primitives.len()),
             packed: Run::default(),
             counts: RayCounts::default(),
+            faint: Faint::default(),
         }
     }
 
@@ -170,7 +173,8 @@ impl<'w, L: Lane> Tracer<'w, L> {
             let groups: &[LaneGroup] = if packed { &self.packed.groups } else { &run.groups };
             let spawn = level < self.max_depth;
             let hits = Hits { flock: run.flock, rays, hits, groups };
-            let children = Children { mirrored: &mut at.mirrored, transmitted: &mut at.transmitted, spawn };
+            let (mirrored, transmitted) = (&mut at.mirrored, &mut at.transmitted);
+            let children = Children { mirrored, transmitted, spawn, faint: &mut self.faint };
             L::vectorize(
                 #[inline(always)]
                 || {

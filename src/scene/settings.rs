@@ -24,16 +24,21 @@ pub enum AntiAliasing {
     Off,
     /// A regular n × n grid of rays, whose colours are averaged.
     Grid(u32),
+    /// One ray through the middle of each pixel, and up to so many where neighbours differ.
+    Adaptive(u32),
 }
 
 impl AntiAliasing {
     /// Largest n of a grid: 1,024 rays a pixel.
     pub const LARGEST_GRID: u32 = 32;
 
-    /// Rays along one side of a pixel.
+    /// Most rays of a pixel that differs from its neighbours: those of the largest grid.
+    pub const MOST_RAYS: u32 = Self::LARGEST_GRID * Self::LARGEST_GRID;
+
+    /// Rays along one side of a pixel, of those that every pixel gets.
     pub fn side(self) -> u32 {
         match self {
-            AntiAliasing::Off => 1,
+            AntiAliasing::Off | AntiAliasing::Adaptive(_) => 1,
             AntiAliasing::Grid(n) => n,
         }
     }

@@ -16,7 +16,7 @@ use crate::diag::Diagnostic;
 use crate::film::{self, Film, Format, Recipe};
 use crate::lang::{self, Evaluated, Memory};
 use crate::render::{self, Retracer};
-use crate::scene::range;
+use crate::scene::{AntiAliasing, range};
 use std::io::{self, Cursor};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
@@ -119,6 +119,7 @@ impl Maker<'_> {
             view: self.project.view_words([film.width, film.height]),
             thumbnail: small.map(|s| [s.width, s.height]),
             grid: options.aa.side(),
+            adaptive: if let AntiAliasing::Adaptive(n) = options.aa { Some(n) } else { None },
             max_depth: options.max_depth,
             precision: precision_word(options.precision).into(),
             rays: [rays.camera, rays.shadow, rays.reflected, rays.transmitted],

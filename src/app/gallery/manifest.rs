@@ -64,6 +64,9 @@ pub struct Figures {
     pub thumbnail: Option<[u32; 2]>,
     /// Rays a pixel, along one side of their grid; 1 is a single ray.
     pub grid: u32,
+    /// The most rays a pixel where only those get more that differ from their neighbours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<u32>,
     /// Reflections and transmissions one after another.
     pub max_depth: u32,
     /// `f64` or `f32`.

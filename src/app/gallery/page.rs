@@ -163,9 +163,10 @@ impl Templates {
 pub fn figures(f: &Figures) -> Vec<(&'static str, String)> {
     let [width, height] = f.size;
     let [camera, shadow, reflected, transmitted] = f.rays;
-    let a_pixel = match f.grid {
-        1 => "1".into(),
-        n => format!("{} ({n} × {n})", n * n),
+    let a_pixel = match (f.adaptive, f.grid) {
+        (Some(most), _) => format!("1 to {most}, more where neighbours differ"),
+        (None, 1) => "1".into(),
+        (None, n) => format!("{} ({n} × {n})", n * n),
     };
     let mut rows = vec![
         ("size", format!("{width} × {height} pixels")),

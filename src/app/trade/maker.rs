@@ -4,7 +4,7 @@ use super::budget::Budget;
 use super::clock::Clock;
 use super::setting::{Setting, Way};
 use crate::app::stats::Rays;
-use crate::render::certify::{Control, Pixel, Summary, Target, refine};
+use crate::render::certify::{Control, Pixel, Refined, Summary, Target, refine};
 use crate::render::{self, Options, Silent, World};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
@@ -30,8 +30,8 @@ pub struct Cost {
     pub runs: u32,
     /// Rays from the camera.
     pub camera_rays: u64,
-    /// Rays of all kinds; `None` where an error is asked for: then only those from the camera are counted.
-    pub rays: Option<u64>,
+    /// Rays of all kinds.
+    pub rays: u64,
     /// Regions whose light was bounded.
     pub bounds: u64,
 }
@@ -73,10 +73,9 @@ impl Maker<'_> {
         let clock = Clock::start();
         let rendered = self.budget.within(seconds, |cancel| render::render(self.world, &options, &Silent, cancel))?;
         let mut cost = once(&clock);
-        cost.camera_rays = rendered.rays.camera;
+        (cost.camera_rays, cost.rays) = (rendered.rays.camera, Rays::from(rendered.rays).total);
         let pixels = rendered.film.pixels;
         let Some(certificate) = rendered.certificate else {
-            cost.rays = Some(Rays::from(rendered.rays).total);
             return Some(Made { pixels, cost, claim: None, certified: Vec::new() });
         };
         cost.bounds = certificate.summary.evaluations;
@@ -90,19 +89,21 @@ impl Maker<'_> {
         let target = Target { certificates: false, ..Target::new(codes) };
         let mut certified = vec![Pixel::unknown(); options.width as usize * options.height as usize];
         let work = |cancel: &AtomicBool| reach(self.world, options, &target, &mut certified, cancel);
-        if !self.budget.within(seconds, work) {
+        let Refined { is_whole, rays } = self.budget.within(seconds, work);
+        if !is_whole {
             return None;
         }
         let cost = once(&clock);
         let summary = Summary::of(&certified, codes);
-        let cost = Cost { camera_rays: summary.samples, bounds: summary.evaluations, ..cost };
+        let (camera_rays, rays) = (rays.camera, Rays::from(rays).total);
+        let cost = Cost { camera_rays, rays, bounds: summary.evaluations, ..cost };
         let pixels = certified.iter().map(|p| p.value.map(|v| v as f32)).collect();
         Some(Made { pixels, cost, claim: Some(Claim::of(&summary)), certified })
     }
 }
 
-/// Brings `pixels` to a target; whether it got through.
-pub fn reach(world: &World, options: &Options, target: &Target, pixels: &mut [Pixel], cancel: &AtomicBool) -> bool {
+/// Brings `pixels` to a target.
+pub fn reach(world: &World, options: &Options, target: &Target, pixels: &mut [Pixel], cancel: &AtomicBool) -> Refined {
     refine(world, options, target, pixels, Control { progress: &Silent, cancel })
 }
 

@@ -8,12 +8,21 @@ use crate::scene::{Precision, Settings};
 const ERRORS: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
 /// Rays along a side of a pixel.
 const GRIDS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
+/// The most rays of a pixel that differs from its neighbours.
+const ADAPTIVE: [u32; 5] = [4, 16, 64, 256, 1024];
 /// Seconds. The shortest serves small pictures, the longest is left out where the budget is smaller.
 const TIMES: [f64; 8] = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0];
 /// Recursion limits below the scene's own.
 const DEPTHS: [u32; 13] = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
 /// Errors that are also reached by samples alone: they take long.
 const SAMPLED: [f64; 2] = [16.0, 4.0];
+
+/// Ways of the mixed settings, from the cheapest to the dearest.
+const MIXED: [Way; 6] =
+    [Way::Grid(1), Way::Grid(2), Way::Adaptive(16), Way::Adaptive(64), Way::Grid(6), Way::Adaptive(256)];
+/// The depth that each of them gets, in sixths of the scene's own: a Latin hypercube (McKay, Beckman, Conover, Technometrics 21, 1979),
+/// in which every sixth of a dial is taken once. Of the 720 permutations one without a trend.
+const SIXTHS: [u32; 6] = [4, 2, 6, 1, 5, 3];
 
 /// The reference is known this many times better than the smallest error that is swept.
 pub const REFERENCE_FACTOR: f64 = 4.0;
@@ -37,6 +46,7 @@ pub fn positions(axis: Axis, base: &Setting) -> Vec<Setting> {
             grids.dedup();
             grids.into_iter().map(|n| way(Way::Grid(n))).collect()
         }
+        Axis::Adaptive => ADAPTIVE.map(|n| way(Way::Adaptive(n))).into(),
         Axis::Time => TIMES.map(|s| way(Way::Time(s))).into(),
         Axis::Depth => {
             let deeper = (2 * base.depth).clamp(1, Settings::LARGEST_DEPTH);
@@ -46,6 +56,10 @@ pub fn positions(axis: Axis, base: &Setting) -> Vec<Setting> {
             depths.into_iter().map(|depth| Setting { depth, ..*base }).collect()
         }
         Axis::Precision => [Precision::F32, Precision::F64].map(|precision| Setting { precision, ..*base }).into(),
+        Axis::Mixed => {
+            let mix = |(way, sixths): (Way, u32)| Setting { way, depth: (base.depth * sixths).div_ceil(6), ..*base };
+            MIXED.into_iter().zip(SIXTHS).map(mix).collect()
+        }
         Axis::Certificates => SAMPLED.map(|e| way(Way::Sampled(e))).into(),
     }
 }
@@ -58,7 +72,7 @@ mod tests {
 
     #[test]
     fn one_dial_at_a_time() {
-        for axis in Axis::ALL {
+        for axis in Axis::ALL.into_iter().filter(|a| *a != Axis::Mixed) {
             for s in positions(axis, &BASE) {
                 let turned = [s.way != BASE.way, s.depth != BASE.depth, s.precision != BASE.precision];
                 assert!(turned.iter().filter(|t| **t).count() <= 1, "{axis:?} {s:?}");
@@ -69,5 +83,9 @@ mod tests {
         let shallow: Vec<u32> = positions(Axis::Depth, &Setting { depth: 0, ..BASE }).iter().map(|s| s.depth).collect();
         assert_eq!(shallow, [0, 1]);
         assert!(positions(Axis::Samples, &BASE).contains(&BASE));
+        let mut depths: Vec<u32> =
+            positions(Axis::Mixed, &Setting { depth: 6, ..BASE }).iter().map(|s| s.depth).collect();
+        depths.sort_unstable();
+        assert_eq!(depths, [1, 2, 3, 4, 5, 6]);
     }
 }

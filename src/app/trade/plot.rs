@@ -29,13 +29,15 @@ struct Panel<'r> {
 
 /// Colours, on light ground and on dark; of the dials in the order of [`Axis::ALL`]. After Okabe & Ito, *Color Universal Design*,
 /// 2008, made darker or lighter for the ground.
-const DIALS: [[&str; 2]; 6] = [
+const DIALS: [[&str; 2]; 8] = [
     ["#0072b2", "#56b4e9"],
     ["#c65102", "#ff9248"],
+    ["#5d6770", "#aab4bd"],
     ["#00805d", "#3ccf9f"],
     ["#7a52c7", "#b79cf2"],
     ["#8f6a00", "#e6c04a"],
     ["#b5145a", "#f27ba8"],
+    ["#23262b", "#e4e5e7"],
 ];
 /// Grounds, texts, lesser texts, lines.
 const PLAIN: [(&str, [&str; 2]); 4] = [
@@ -228,10 +230,12 @@ fn mark(dial: usize, x: f64, y: f64) -> String {
     match dial {
         0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.5\"/>"),
         1 => format!("<rect x=\"{:.1}\" y=\"{:.1}\" width=\"8\" height=\"8\"/>", x - 4.0, y - 4.0),
-        2 => format!("<path d=\"M{x:.1} {:.1}l5 9h-10z\"/>", y - 5.0),
-        3 => format!("<path d=\"M{x:.1} {:.1}l5.5 5.5l-5.5 5.5l-5.5 -5.5z\"/>", y - 5.5),
-        4 => format!("<path stroke-width=\"3\" d=\"M{:.1} {y:.1}h10M{x:.1} {:.1}v10\"/>", x - 5.0, y - 5.0),
-        _ => format!("<path stroke-width=\"3\" d=\"M{:.1} {:.1}l8 8m0 -8l-8 8\"/>", x - 4.0, y - 4.0),
+        2 => format!("<path d=\"M{x:.1} {:.1}l5 -9h-10z\"/>", y + 5.0),
+        3 => format!("<path d=\"M{x:.1} {:.1}l5 9h-10z\"/>", y - 5.0),
+        4 => format!("<path d=\"M{x:.1} {:.1}l5.5 5.5l-5.5 5.5l-5.5 -5.5z\"/>", y - 5.5),
+        5 => format!("<path stroke-width=\"3\" d=\"M{:.1} {y:.1}h10M{x:.1} {:.1}v10\"/>", x - 5.0, y - 5.0),
+        6 => format!("<path stroke-width=\"3\" d=\"M{:.1} {:.1}l8 8m0 -8l-8 8\"/>", x - 4.0, y - 4.0),
+        _ => format!("<path stroke-width=\"3\" d=\"M{:.1} {y:.1}h10\"/>", x - 5.0),
     }
 }
 

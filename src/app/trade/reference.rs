@@ -125,7 +125,7 @@ fn certified(maker: &Maker<'_>, base: &Setting) -> Reference {
         for codes in RUNGS.into_iter().chain([asked, asked / BEYOND]) {
             // Its codes aren't rounded: it is no file.
             let target = Target { quantum: 0.0, ..Target::new(codes) };
-            if !reach(maker.world, &options, &target, &mut pixels, cancel) {
+            if !reach(maker.world, &options, &target, &mut pixels, cancel).is_whole {
                 break;
             }
             climb.reached.push((codes, clock.read().0));

@@ -178,7 +178,7 @@ impl Report {
                 or_empty(row.cost.cpu_seconds.map(|s| s.to_string())),
                 row.cost.runs.to_string(),
                 row.cost.camera_rays.to_string(),
-                or_empty(row.cost.rays.map(|n| n.to_string())),
+                row.cost.rays.to_string(),
                 row.cost.bounds.to_string(),
                 row.max[0].to_string(),
                 row.max[1].to_string(),

@@ -12,6 +12,8 @@ use std::fmt::Write as _;
 pub enum Way {
     /// So many along each side of a pixel.
     Grid(u32),
+    /// One a pixel, and up to so many where neighbours differ.
+    Adaptive(u32),
     /// The error that is asked for, in codes of 8 bits.
     Error(f64),
     /// The same without bounds of regions: samples alone.
@@ -38,7 +40,10 @@ impl Setting {
             // Where both are asked for, the error is what is wanted of the picture.
             Some(Accuracy { error: Some(share), .. }) => Way::Error(255.0 * share),
             Some(Accuracy { time: Some(seconds), .. }) => Way::Time(seconds),
-            _ => Way::Grid(options.aa.side()),
+            _ => match options.aa {
+                AntiAliasing::Adaptive(n) => Way::Adaptive(n),
+                aa => Way::Grid(aa.side()),
+            },
         };
         Setting { way, depth: options.max_depth, precision: options.precision }
     }
@@ -47,11 +52,12 @@ impl Setting {
     pub fn options(&self, options: &Options) -> Options {
         let aa = match self.way {
             Way::Grid(n) if n > 1 => AntiAliasing::Grid(n),
+            Way::Adaptive(n) => AntiAliasing::Adaptive(n),
             _ => AntiAliasing::Off,
         };
         let confidence = options.accuracy.map_or(Accuracy::CONFIDENCE, |a| a.confidence);
         let accuracy = match self.way {
-            Way::Grid(_) => None,
+            Way::Grid(_) | Way::Adaptive(_) => None,
             Way::Error(codes) | Way::Sampled(codes) => {
                 Some(Accuracy { error: Some(codes / 255.0), time: None, confidence })
             }
@@ -65,6 +71,7 @@ impl Setting {
         let mut words = match self.way {
             Way::Grid(1) => "1 ray a pixel".into(),
             Way::Grid(n) => format!("grid {n}×{n}"),
+            Way::Adaptive(n) => format!("adaptive, up to {n} rays"),
             Way::Error(codes) => format!("max error {}/255", number(codes)),
             Way::Sampled(codes) => format!("max error {}/255 by samples alone", number(codes)),
             Way::Time(seconds) => format!("time {} s", number(seconds)),
@@ -81,10 +88,14 @@ impl Setting {
     /// In a few characters, for a plot.
     pub fn label(&self, base: &Setting) -> String {
         match self.way {
+            way if self.depth != base.depth && way != base.way => {
+                format!("{}, d {}", Setting { depth: base.depth, ..*self }.label(base), self.depth)
+            }
             _ if self.depth != base.depth => format!("depth {}", self.depth),
             _ if self.precision != base.precision => precision_word(self.precision).into(),
             Way::Grid(1) => "off".into(),
             Way::Grid(n) => format!("{n}×{n}"),
+            Way::Adaptive(n) => format!("≤ {n}"),
             Way::Error(codes) => format!("{}/255", number(codes)),
             Way::Sampled(codes) => format!("{}/255 sampled", number(codes)),
             Way::Time(seconds) => format!("{} s", number(seconds)),
@@ -96,6 +107,7 @@ impl Setting {
         let mut arguments = match self.way {
             Way::Grid(1) => "--aa off".into(),
             Way::Grid(n) => format!("--aa grid:{n}"),
+            Way::Adaptive(n) => format!("--aa adaptive:{n}"),
             Way::Error(codes) => format!("--max-error {}/255", number(codes)),
             Way::Time(seconds) => format!("--time {}s", number(seconds)),
             Way::Sampled(_) => return None,
@@ -140,6 +152,10 @@ mod tests {
         let timed = Setting { way: Way::Time(2.0), ..base };
         assert_eq!((timed.label(&base), timed.arguments(&base)), ("2 s".into(), Some("--time 2s".into())));
         assert_eq!(Setting { way: Way::Sampled(4.0), ..base }.arguments(&base), None);
+        let adaptive = Setting { way: Way::Adaptive(16), ..base };
+        assert_eq!(adaptive.arguments(&base).as_deref(), Some("--aa adaptive:16"));
+        let options = adaptive.options(&Options::from_settings(&Default::default()));
+        assert_eq!(Setting::of(&options).way, adaptive.way);
         assert_eq!([0.126, 9.996, 99.97, 146.2].map(digits), ["0.13", "10.0", "100", "146"]);
     }
 }

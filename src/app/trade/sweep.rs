@@ -172,9 +172,7 @@ impl Sweep {
     fn expected(&self, setting: &Setting) -> Option<f64> {
         let seconds = |p: &Point| p.cost.seconds;
         match setting.way {
-            _ if setting.depth != self.base.depth || setting.precision != self.base.precision => {
-                Some(ROOM * seconds(&self.points[0]))
-            }
+            _ if setting.way == self.base.way => Some(ROOM * seconds(&self.points[0])),
             Way::Grid(n) => {
                 let measured = self.points.iter().rev().find_map(|p| match p.setting.way {
                     Way::Grid(m) => Some(seconds(p) * (n * n) as f64 / (m * m) as f64),
@@ -182,6 +180,15 @@ impl Sweep {
                 });
                 // Nothing cheaper than this is swept.
                 measured.or(Some(ROOM * seconds(&self.points[0]) * (n * n) as f64))
+            }
+            Way::Adaptive(n) => {
+                let mut measured = self.points.iter().rev();
+                let measured = measured.find_map(|p| match p.setting.way {
+                    Way::Adaptive(m) => Some(seconds(p) * n as f64 / m as f64),
+                    _ => None,
+                });
+                // No more than all pixels would take.
+                measured.or(Some(ROOM * seconds(&self.points[0]) * n as f64))
             }
             Way::Error(codes) => {
                 let known = self.reference.climb.expected(codes);

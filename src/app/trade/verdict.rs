@@ -84,7 +84,7 @@ impl Verdict {
 
 /// Whether each position of a dial buys accuracy for its time: what a limit of recursion cuts off comes to an end instead.
 fn has_slope(axis: Axis) -> bool {
-    matches!(axis, Axis::Error | Axis::Samples | Axis::Time)
+    matches!(axis, Axis::Error | Axis::Samples | Axis::Adaptive | Axis::Time)
 }
 
 /// The largest error that a picture may have: as measured, with the truth's own uncertainty, or as it says of itself where it says
@@ -166,7 +166,7 @@ fn dials(sweep: &Sweep) -> Vec<String> {
                     }
                 }
             }
-            Axis::Error | Axis::Samples | Axis::Time => {}
+            Axis::Error | Axis::Samples | Axis::Adaptive | Axis::Time | Axis::Mixed => {}
         }
     }
     remarks

@@ -122,10 +122,7 @@ impl Resolver {
             self.args_alone(args);
             return Code::Failed;
         }
-        if word.kind == word::Kind::Setting
-            && word.name != "grid"
-            && (mode != Mode::Scene || self.in_group || self.scopes.levels.len() > 1)
-        {
+        if word.sets_something() && (mode != Mode::Scene || self.in_group || self.scopes.levels.len() > 1) {
             self.errors.push(
                 Diagnostic::error(format!("`{}` belongs at the top level of the file", word.name))
                     .at(span, "not within a block or function")

@@ -8,7 +8,7 @@ use crate::lang::code::*;
 use crate::lang::scope::{Access, Kind};
 use crate::lang::suggest::{did_you_mean, nearest, nearest_word};
 use crate::lang::value::{BuiltinId, Value};
-use crate::lang::word::{self, Run};
+use crate::lang::word::Run;
 
 impl Resolver {
     pub(super) fn captured_var(&mut self, name: &Ident, bound: Span, what: &str) {
@@ -103,7 +103,7 @@ impl Resolver {
                 );
                 Code::Failed
             }
-            _ if word.kind == word::Kind::Setting && word.name != "grid" => {
+            _ if word.sets_something() => {
                 self.errors.push(
                     Diagnostic::error(format!("`{}` must be called", word.name))
                         .at(span, format!("write `{}(…)`", word.name))

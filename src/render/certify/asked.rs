@@ -2,10 +2,10 @@
 //! short. What a round has brought to its error stays, whatever becomes of the next.
 
 use super::super::options::{Options, Progress, RayCounts, Rendered, Silent};
+use super::super::sketch::{PASSES, Sketch};
 use super::super::world::World;
 use super::picture::threads;
-use super::sketch::{Pass, Sketch};
-use super::{Control, Pixel, Status, Summary, Target, refine};
+use super::{Control, Pixel, Refined, Status, Summary, Target, refine};
 use crate::film::Film;
 use crate::scene::Accuracy;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -21,7 +21,7 @@ pub struct Certificate {
     pub reached: f64,
     /// How many pixels keep it, how surely.
     pub summary: Summary,
-    /// Every pixel that was made, row by row.
+    /// Every pixel that was made, row by row; empty where time was over before anything was known of any.
     pub pixels: Vec<Pixel>,
 }
 
@@ -31,9 +31,6 @@ pub struct Certificate {
 const ROUNDS: [f64; 3] = [4.0, 2.0, LAST];
 /// The last of them, where none is asked for.
 const LAST: f64 = 1.0;
-
-/// Where nothing is certain yet: each takes about as long as all before it, and halves what is visible of the error.
-const PASSES: [Pass; 3] = [Pass { rays: 16, codes: 8 }, Pass { rays: 64, codes: 4 }, Pass { rays: 256, codes: 3 }];
 
 /// How often it is looked whether work is to end: unnoticeable, and it costs nothing.
 const GLANCE: Duration = Duration::from_millis(2);
@@ -68,25 +65,36 @@ fn until<'w>(
     cancel: &AtomicBool,
 ) -> Option<Picture<'w>> {
     let mut sketch = Sketch::new(world, options, cancel)?;
+    let part = options.crop_or_all();
+    let is_whole =
+        watched(deadline, cancel, |over| PASSES.iter().all(|pass| sketch.pass(*pass, (part, &Silent), over)));
+    if !is_whole {
+        return Some(Picture::sketched(sketch, accuracy));
+    }
+    let begin = Instant::now();
+    let mut picture = Picture::begun(sketch, accuracy);
+    // To account for all pixels at the end takes about as long as to write them down.
+    let deadline = deadline.checked_sub(begin.elapsed()).unwrap_or(deadline);
+    // Pixels are told of once, and nobody knows in which round they come to their end.
+    watched(deadline, cancel, |over| picture.rounds(Control { progress: &Silent, cancel: over }));
+    Some(picture)
+}
+
+/// Works until it is done, or tells it to end when the time is over or `cancel` is set.
+fn watched<T>(deadline: Instant, cancel: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
     let over = AtomicBool::new(false);
-    let picture = thread::scope(|s| {
+    thread::scope(|s| {
         let watchman = s.spawn(|| {
             while !over.load(Relaxed) && !cancel.load(Relaxed) && Instant::now() < deadline {
                 thread::park_timeout(GLANCE);
             }
             over.store(true, Relaxed);
         });
-        let is_whole = PASSES.iter().all(|pass| sketch.pass(*pass, &over));
-        let mut picture = Picture::begun(sketch, accuracy);
-        if is_whole {
-            // Pixels are told of once, and nobody knows in which round they come to their end.
-            picture.rounds(Control { progress: &Silent, cancel: &over });
-        }
+        let done = work(&over);
         over.store(true, Relaxed);
         watchman.thread().unpark();
-        picture
-    });
-    Some(picture)
+        done
+    })
 }
 
 /// The errors of the rounds, in codes: the last is the one asked for.
@@ -117,13 +125,18 @@ impl<'w> Picture<'w> {
         Picture { world, options, accuracy, reached: 255.0, pixels, rays: RayCounts::default(), sketch: None }
     }
 
+    /// With something to show of every pixel, of none of which anything is known, or will be.
+    fn sketched(sketch: Sketch<'w>, accuracy: Accuracy) -> Picture<'w> {
+        let Sketch { world, options, film, rays, .. } = sketch;
+        let reached = rounds(accuracy).next().unwrap_or(LAST);
+        Picture { world, options, accuracy, reached, pixels: Vec::new(), rays, sketch: Some(film) }
+    }
+
     /// With something to show of every pixel.
     fn begun(sketch: Sketch<'w>, accuracy: Accuracy) -> Picture<'w> {
-        let Sketch { world, options, film, rays, .. } = sketch;
         let pixel = |light: &[f32; 3]| Pixel { value: light.map(f64::from), ..Pixel::unknown() };
-        let pixels = film.pixels.iter().map(pixel).collect();
-        let reached = rounds(accuracy).next().unwrap_or(LAST);
-        Picture { world, options, accuracy, reached, pixels, rays, sketch: Some(film) }
+        let pixels = sketch.film.pixels.iter().map(pixel).collect();
+        Picture { pixels, ..Picture::sketched(sketch, accuracy) }
     }
 
     /// One round after another, as far as it goes.
@@ -138,7 +151,8 @@ impl<'w> Picture<'w> {
     /// Brings all pixels to an error, in codes; whether it got through.
     fn round(&mut self, codes: f64, control: Control<'_>) -> bool {
         let target = self.target(codes);
-        let is_whole = refine(self.world, self.options, &target, &mut self.pixels, control);
+        let Refined { is_whole, rays } = refine(self.world, self.options, &target, &mut self.pixels, control);
+        self.rays = self.rays.plus(rays);
         if is_whole {
             self.reached = codes;
         }
@@ -161,11 +175,16 @@ impl<'w> Picture<'w> {
     }
 
     fn finished(mut self) -> Rendered {
+        if let (true, Some(film)) = (self.pixels.is_empty(), self.sketch.take()) {
+            let Picture { options, accuracy, reached, pixels, rays, .. } = self;
+            let summary = Summary { open: film.pixels.len(), ..Summary::default() };
+            let certificate = Some(Box::new(Certificate { accuracy, reached, summary, pixels }));
+            return Rendered { film, rays, threads: threads(options), certificate };
+        }
         self.take_guesses();
-        let Picture { options, accuracy, reached, pixels, mut rays, .. } = self;
+        let Picture { options, accuracy, reached, pixels, rays, .. } = self;
         let part = options.crop_or_all();
         let summary = Summary::of(&pixels, reached);
-        rays.camera += summary.samples;
         let film = Film {
             width: part.width,
             height: part.height,

@@ -9,6 +9,7 @@ use super::super::shape::Primitive;
 use super::super::world::World;
 use super::bound::{Bound, Span, hull};
 use super::study::Study;
+use super::target::Target;
 use crate::math::Form;
 
 /// A world, as seen by its camera in a picture of a given size, about which certificates are made.
@@ -23,6 +24,8 @@ pub struct Certifier<'w> {
     gives: Vec<Gives>,
     /// Where the values of each pattern lie.
     patterns: Vec<[Span; 3]>,
+    /// What rays that go on bring isn't looked for where it is no more than that.
+    pub(super) faint: f64,
 }
 
 impl<'w> Certifier<'w> {
@@ -31,7 +34,12 @@ impl<'w> Certifier<'w> {
         let depth = options.max_depth;
         let patterns = pattern_ranges(world);
         let (gives, ceilings) = ceilings(world, &patterns, depth);
-        Certifier { world, grid: world.camera.grid(options), depth, ceilings, gives, patterns }
+        Certifier { world, grid: world.camera.grid(options), depth, ceilings, gives, patterns, faint: 0.0 }
+    }
+
+    /// For pictures that are to reach a target: then what is too faint to matter is left unknown.
+    pub fn for_target(self, target: &Target) -> Certifier<'w> {
+        Certifier { faint: target.faint(), ..self }
     }
 
     /// What is known of the light in a rectangle of the picture, in pixels: left, top, right, bottom. ξ grows to the right and η

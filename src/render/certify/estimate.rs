@@ -4,9 +4,9 @@
 //! leave open: a feature of up to 3/n of the pixel (the rule of three), as bright as anything can be there.
 
 use super::super::bounds::{larger, smaller};
+use super::super::sobol;
 use super::bound::Span;
 use super::sampler::Sampler;
-use super::sobol;
 use super::target::Target;
 use crate::math::fun;
 use crate::math::hash::KeyedHash;
@@ -24,24 +24,28 @@ pub struct Estimate {
     pub value: [f64; 3],
     /// Half the interval.
     pub half_width: [f64; 3],
+    /// How much of that is for rays that were left out.
+    pub left_out: [f64; 3],
     /// Rays.
     pub samples: u32,
 }
 
-/// Samples a pixel, twice as often each time, until `is_enough` or the budget is spent. `range` is where its light lies.
+/// Samples a pixel, twice as often each time, until `is_enough` says whether that is so, or the budget is spent. `range` is where its
+/// light lies, `onward` where that of any ray lies that goes on.
 pub fn estimate(
     sampler: &mut dyn Sampler,
     rect: [f64; 4],
     (target, budget): (&Target, u32),
-    range: [Span; 3],
+    (range, onward): ([Span; 3], [Span; 3]),
     key: KeyedHash,
-    is_enough: impl Fn(&Estimate) -> bool,
+    is_enough: impl Fn(&Estimate) -> Option<bool>,
 ) -> Option<(Estimate, bool)> {
     let looks = (budget / (FIRST * REPLICATES as u32)).checked_ilog2()? + 1;
     // All channels and looks together are to keep the confidence.
     let t = student(REPLICATES - 1, (1.0 - target.confidence) / (3.0 * looks as f64));
     let mut sums = [[0.0; 3]; REPLICATES];
-    let mut done = 0;
+    let (mut done, mut left_out) = (0, 0.0);
+    sampler.left_out();
     let mut points = Vec::new();
     for look in 0..looks {
         let n = FIRST << look;
@@ -60,21 +64,24 @@ pub fn estimate(
         }
         done = n;
         let samples = n * REPLICATES as u32;
-        let mut e = Estimate { value: [0.0; 3], half_width: [0.0; 3], samples };
+        left_out += sampler.left_out();
+        let lost = left_out / samples as f64;
+        let mut e = Estimate { value: [0.0; 3], half_width: [0.0; 3], left_out: [0.0; 3], samples };
         for c in 0..3 {
             let means = sums.map(|s| s[c] / n as f64);
             let mean = means.iter().sum::<f64>() / REPLICATES as f64;
             let squares: f64 = means.iter().map(|m| (m - mean) * (m - mean)).sum();
             let deviation = (squares / ((REPLICATES - 1) * REPLICATES) as f64).sqrt();
             let unseen = (range[c][1] - range[c][0]) * 3.0 / samples as f64;
-            e.value[c] = larger(smaller(mean, range[c][1]), range[c][0]);
-            e.half_width[c] = larger(t * deviation, unseen);
+            // Weights are negative where light may be, too; then its range is as wide to both sides.
+            let [lo, hi] = onward[c];
+            let (middle, off) = if lo < 0.0 { (0.0, lost * hi) } else { (0.5 * lost * hi, 0.5 * lost * hi) };
+            e.value[c] = larger(smaller(mean + middle, range[c][1]), range[c][0]);
+            e.half_width[c] = larger(t * deviation, unseen) + off;
+            e.left_out[c] = off;
         }
-        if is_enough(&e) {
-            return Some((e, true));
-        }
-        if look + 1 == looks {
-            return Some((e, false));
+        if let Some(is_enough) = is_enough(&e).or((look + 1 == looks).then_some(false)) {
+            return Some((e, is_enough));
         }
     }
     None

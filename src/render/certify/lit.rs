@@ -76,14 +76,15 @@ impl<'c> Study<'c> {
         if goes_through {
             return own.plus(self.bent_light(p, &met, (shares.reflect, shares.transmit), depth - 1));
         }
-        let back = match met.at {
+        let reflect = shares.reflect.map(|[lo, hi]| Form::between(lo, hi));
+        let back = self.onward(p, reflect, (depth - 1, 0.0), |study| match met.at {
             Some(o) if met.bent.is_none() && met.surfacing.bump.is_none() => {
                 let d = mirrored(met.d, met.n);
-                self.seen(p, &Bundle { o, d, start: Some(met.start), rect: None }, depth - 1)
+                study.seen(p, &Bundle { o, d, start: Some(met.start), rect: None }, depth - 1)
             }
-            _ => Bound::within(p, self.scene.ceiling(depth - 1)),
-        };
-        own.plus(back.shared(p, shares.reflect))
+            _ => Bound::within(p, study.scene.ceiling(depth - 1)),
+        });
+        own.plus(back)
     }
 
     /// Ambient light and that of all lights.

@@ -3,7 +3,7 @@
 
 use super::super::crew::{crew, useful};
 use super::super::dispatch::sampler;
-use super::super::options::{Crop, Options, Progress, Silent};
+use super::super::options::{Crop, Options, Progress, RayCounts, Silent};
 use super::super::world::World;
 use super::bound::Span;
 use super::budget::affordable;
@@ -36,18 +36,33 @@ pub fn certify(world: &World, options: &Options, target: &Target) -> Vec<Pixel> 
     pixels
 }
 
-/// Brings those pixels to the target that don't keep its error yet, and leaves alone those that do. Whether it got through: false
-/// where it was cancelled; what wasn't reached is left as it was then.
+/// What became of a picture's refinement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refined {
+    /// Whether it got through; false where it was cancelled.
+    pub is_whole: bool,
+    /// What was traced.
+    pub rays: RayCounts,
+}
+
+/// Brings those pixels to the target that don't keep its error yet, and leaves alone those that do. Where it is cancelled, what
+/// wasn't reached is left as it was.
 ///
 /// `pixels` are those of the picture, or of the options' part of it, row by row: [`Pixel::unknown`], or what a call for a larger
 /// error left, of the same world and options. A pixel that isn't brought to the target keeps what it was known to keep
 /// before. Bits depend on the world, the options and all targets so far, on nothing else, unless the work is cancelled.
-pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [Pixel], control: Control<'_>) -> bool {
-    let certifier = Certifier::new(world, options);
+pub fn refine(
+    world: &World,
+    options: &Options,
+    target: &Target,
+    pixels: &mut [Pixel],
+    control: Control<'_>,
+) -> Refined {
+    let certifier = Certifier::new(world, options).for_target(target);
     let affordable = affordable(&certifier, options, target, control.cancel);
     let blocks = blocks(options, pixels);
     let next = AtomicUsize::new(0);
-    crew(threads(options), || {
+    let counts = crew(threads(options), || {
         let mut work = Work {
             certifier: &certifier,
             sampler: &mut *sampler(world, options, control.cancel),
@@ -67,8 +82,10 @@ pub fn refine(world: &World, options: &Options, target: &Target, pixels: &mut [P
                 block.tell(control.progress);
             }
         }
+        work.sampler.counts()
     });
-    !control.cancel.load(Relaxed)
+    let rays = counts.into_iter().fold(RayCounts::default(), RayCounts::plus);
+    Refined { is_whole: !control.cancel.load(Relaxed), rays }
 }
 
 /// Threads that are of use for so many blocks.

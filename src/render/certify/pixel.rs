@@ -3,7 +3,7 @@
 use super::super::bounds::{larger, smaller};
 use super::bound::{Span, hull};
 use super::certifier::Certifier;
-use super::estimate::estimate;
+use super::estimate::{Estimate, estimate};
 use super::leaves::{Leaf, Plan, judged, total};
 use super::looks::{Found, Looked};
 use super::sampler::Sampler;
@@ -105,8 +105,23 @@ impl Certifier<'_> {
             };
             (0..3).map(one).fold(0.0, larger)
         };
-        let enough = |e: &super::estimate::Estimate| codes(e.value, e.half_width) <= target.codes;
-        match estimate(sampler, rect, (target, target.samples), range, key, enough) {
+        let enough = |e: &Estimate| match codes(e.value, e.half_width) <= target.codes {
+            true => Some(true),
+            // More samples won't help.
+            false => (e.left_out != [0.0; 3] && codes(e.value, e.left_out) > 0.5 * target.codes).then_some(false),
+        };
+        let onward = self.ceiling(self.depth.saturating_sub(1));
+        let brightest = (0..3).map(|c| onward[c][1]).fold(0.0, larger);
+        let budget = (target, target.samples);
+        sampler.leave_out(if brightest > 0.0 { target.faint() / brightest } else { 0.0 });
+        let mut found = estimate(sampler, rect, budget, (range, onward), key, enough);
+        sampler.leave_out(0.0);
+        if found.as_ref().is_some_and(|(e, reached)| !reached && e.left_out != [0.0; 3]) {
+            let traced = found.map_or(0, |(e, _)| e.samples);
+            found = estimate(sampler, rect, budget, (range, onward), key, enough);
+            found.iter_mut().for_each(|(e, _)| e.samples += traced);
+        }
+        match found {
             Some((e, reached)) => {
                 let value = [0, 1, 2].map(|c| stored(e.value[c].clamp(known[c][0], known[c][1])));
                 let status = if reached { Status::Estimated } else { Status::Open };

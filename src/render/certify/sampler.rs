@@ -4,7 +4,8 @@ use super::super::batch::{MOST, NONE};
 use super::super::camera::PixelGrid;
 use super::super::cull::margin;
 use super::super::footprint::Recorder;
-use super::super::options::Options;
+use super::super::options::{Options, RayCounts};
+use super::super::spawn::Faint;
 use super::super::tracer::Tracer;
 use super::super::world::World;
 use crate::math::{Elem, Lane};
@@ -15,6 +16,15 @@ pub trait Sampler {
     /// Calls `seen` with the number and the light of each point, all of which lie within `rect`: left, top, right, bottom. Where
     /// the work is cancelled meanwhile, that light means nothing.
     fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3]));
+
+    /// From now on mirrored and transmitted rays are left out whose weight is `most` or less in every channel.
+    fn leave_out(&mut self, most: f64);
+
+    /// The sum of the weights of rays left out since this was last asked: of each its largest channel, rounded up.
+    fn left_out(&mut self) -> f64;
+
+    /// Rays so far.
+    fn counts(&self) -> RayCounts;
 }
 
 /// A sampler whose rays travel in lanes.
@@ -83,6 +93,7 @@ impl<L: Lane> Sampler for LaneSampler<'_, L> {
         );
         if !found {
             (0..points.len()).for_each(|i| seen(i, self.world.background));
+            self.tracer.counts.camera += points.len() as u64;
             return;
         }
         for (chunk, first) in points.chunks(MOST).zip((0..).step_by(MOST)) {
@@ -94,5 +105,17 @@ impl<L: Lane> Sampler for LaneSampler<'_, L> {
                 seen(first + i, [0, 1, 2].map(|c| self.tracer.radiance[c][i].to_f64()));
             }
         }
+    }
+
+    fn leave_out(&mut self, most: f64) {
+        self.tracer.faint.most = most;
+    }
+
+    fn left_out(&mut self) -> f64 {
+        std::mem::take(&mut self.tracer.faint.lost) as f64 / Faint::UNIT
+    }
+
+    fn counts(&self) -> RayCounts {
+        self.tracer.counts
     }
 }

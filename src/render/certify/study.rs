@@ -10,9 +10,6 @@ use crate::math::Form;
 /// Most cuts of one region. A region that needs more is better divided: pieces cost as much as a smaller region does.
 const MOST_PIECES: u32 = 96;
 
-/// Rays of less weight at glass aren't followed. Straight on it mirrors some 4 %: once, that is looked at.
-const FAINT: f64 = 1.0 / 64.0;
-
 /// What the study of one region knows and has spent.
 pub struct Study<'c> {
     /// The scene.
@@ -56,22 +53,26 @@ impl<'c> Study<'c> {
         Bound::within(p, self.ceiling)
     }
 
-    /// The light of rays that go on up to `depth` times more and carry these shares: looked for unless it is faint.
+    /// The light of rays that go on up to `depth` times more and carry these shares: looked for, unless it is too faint to matter or
+    /// of less than the `least` weight.
     pub fn onward(
         &mut self,
         p: &Polygon,
         shares: [Form; 3],
-        depth: u32,
+        (depth, least): (u32, f64),
         look: impl FnOnce(&mut Self) -> Bound,
     ) -> Bound {
-        let most = shares.iter().map(|f| p.range(*f)).fold(0.0, |m, (lo, hi)| larger(m, larger(lo.abs(), hi.abs())));
-        let weight = self.weight * most;
-        if !(weight >= FAINT) {
-            return Bound::within(p, self.scene.ceiling(depth)).through(p, shares);
+        let ceiling = self.scene.ceiling(depth);
+        let sizes = shares.map(|f| p.range(f)).map(|(lo, hi)| larger(lo.abs(), hi.abs()));
+        let most = |of: &dyn Fn(usize) -> f64| (0..3).map(|c| sizes[c] * of(c)).fold(0.0, larger);
+        let weight = self.weight * most(&|_| 1.0);
+        if weight < least || self.weight * most(&|c| ceiling[c][1] - ceiling[c][0]) <= self.scene.faint {
+            return Bound::within(p, ceiling).through(p, shares);
         }
-        let outer = std::mem::replace(&mut self.weight, weight);
-        let bound = look(self).limited(p, self.scene.ceiling(depth));
-        self.weight = outer;
+        let outer = (self.weight, self.ceiling);
+        (self.weight, self.ceiling) = (weight, ceiling);
+        let bound = look(self).limited(p, ceiling);
+        (self.weight, self.ceiling) = outer;
         bound.through(p, shares)
     }
 

@@ -47,6 +47,12 @@ impl Target {
         larger(self.codes - 0.5 * self.quantum - 256.0 / (1u32 << 24) as f64 - CURVE, 0.0)
     }
 
+    /// So little light of a channel changes a middle grey by 1/32 of the error: where rays go on, what brings less is left out, and
+    /// counted as unknown.
+    pub(super) fn faint(&self) -> f64 {
+        self.codes / 32.0 * room(0.2, 1.0)
+    }
+
     /// The largest distance, in codes, between the code written for `value` and any value from `lo` to `hi`.
     pub(super) fn error(&self, value: f64, [lo, hi]: Span) -> f64 {
         self.apart(value, [code(lo), code(hi)])

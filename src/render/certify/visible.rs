@@ -115,11 +115,11 @@ impl<'c> Study<'c> {
                 let mut rest = hits.clone();
                 rest.met.retain(|&i| i != first);
                 let behind = View { depth: view.depth - 1, ..*view };
-                let outer =
-                    std::mem::replace(&mut self.ceiling, self.scene.ceiling_among(view.candidates, behind.depth));
-                let bound = self.in_order(p, &behind, &rest);
-                self.ceiling = outer;
-                light.plus(bound.times(share))
+                let seen_behind = |study: &mut Study<'c>| {
+                    study.ceiling = study.scene.ceiling_among(view.candidates, behind.depth);
+                    study.in_order(p, &behind, &rest)
+                };
+                light.plus(self.onward(p, share.map(Form::constant), (behind.depth, 0.0), seen_behind))
             }
         }
     }

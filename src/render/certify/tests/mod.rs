@@ -1,6 +1,7 @@
 //! Certificates hold: light at random points of random regions lies within the form and the range, means within the sums; a bound
 //! that is a little too narrow is noticed; and pictures keep their promise. Here are the scenes.
 
+mod faint;
 mod picture;
 mod region;
 
@@ -106,7 +107,7 @@ fn plain(c: [f64; 3]) -> Look {
 }
 
 /// Every shape that certificates cover, some turned or stretched, on a checkered floor between a mirror and panes, under two lights.
-pub(in crate::render::certify) fn every_shape() -> Scene {
+pub(in crate::render) fn every_shape() -> Scene {
     let mut b = Builder::new();
     let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
     let floor = PatternKind::Checker { a: x, b: y, size: 10.0 };

@@ -124,7 +124,7 @@ fn what_is_cancelled_can_be_gone_on_with() {
     let mut pixels = vec![Pixel::unknown(); (size.0 * size.1) as usize];
     let mut refined = |witness: &Witness| {
         let control = Control { progress: witness, cancel: &witness.cancel };
-        (refine(&world, &options, &target, &mut pixels, control), pixels.clone())
+        (refine(&world, &options, &target, &mut pixels, control).is_whole, pixels.clone())
     };
     let all = certify(&world, &options, &target);
     let first = Witness::new(size, 7);
@@ -150,7 +150,7 @@ fn what_keeps_its_error_is_left_alone() {
     let mut after = before.clone();
     let fine = Target { codes: 3.0, samples: 64, evaluations: 8, ..rough };
     let control = Control { progress: &Silent, cancel: &NEVER };
-    assert!(refine(&world, &options, &fine, &mut after, control));
+    assert!(refine(&world, &options, &fine, &mut after, control).is_whole);
     let mut fell_short = 0;
     for (a, b) in before.iter().zip(&after) {
         if a.keeps(3.0) {
