@@ -4,26 +4,33 @@
 //! Written with plain products and sums only, so that it has the same bits with and without fused multiply-add.
 
 use super::hash::KeyedHash;
-use super::real::{each3, three};
+use super::real::{Real, each3, three};
 
 /// Gradient noise in about −1..1, 0 at lattice points; continuous with two derivatives.
 pub fn gradient_noise(p: [f64; 3], seed: u64) -> f64 {
     let cell = each3!(p, x => floor(x));
     let f = three!(i => p[i] - cell[i]);
     let w = each3!(f, x => x * x * x * (x * (x * 6.0 - 15.0) + 10.0));
+    in_cell(cell, f, w, seed)
+}
+
+/// Gradient noise at `f` in the lattice's cell at `cell`, whose corners weigh as `w` says.
+#[inline(always)]
+pub fn in_cell<R: Real>(cell: [f64; 3], f: [R; 3], w: [R; 3], seed: u64) -> R {
     // The lattice's hash takes one coordinate after another: what corners have in common is hashed once.
     let start = KeyedHash::new().with(seed);
+    let from = |axis: usize, d: usize| if d == 0 { f[axis] } else { f[axis] - R::one() };
     let face = [0, 1].map(|dx: usize| {
         let along_x = start.with_f64(cell[0] + dx as f64);
         [0, 1].map(|dy: usize| {
             let along_y = along_x.with_f64(cell[1] + dy as f64);
             [0, 1].map(|dz: usize| {
                 let h = along_y.with_f64(cell[2] + dz as f64).bits();
-                slope(h, [f[0] - dx as f64, f[1] - dy as f64, f[2] - dz as f64])
+                slope(h, [from(0, dx), from(1, dy), from(2, dz)])
             })
         })
     });
-    let lerp = |a: f64, b: f64, t: f64| a + t * (b - a);
+    let lerp = |a: R, b: R, t: R| a + t * (b - a);
     let edge = |dy: usize, dz: usize| lerp(face[0][dy][dz], face[1][dy][dz], w[0]);
     let level = |dz: usize| lerp(edge(0, dz), edge(1, dz), w[1]);
     lerp(level(0), level(1), w[2])
@@ -41,7 +48,8 @@ fn floor(x: f64) -> f64 {
 }
 
 /// Perlin's twelve gradients towards the middles of a cube's edges, four of them twice.
-fn slope(hash: u64, [x, y, z]: [f64; 3]) -> f64 {
+#[inline(always)]
+fn slope<R: Real>(hash: u64, [x, y, z]: [R; 3]) -> R {
     let h = hash >> 60;
     let u = if h < 8 { x } else { y };
     let v = match h {
@@ -64,15 +72,23 @@ pub fn fractal_noise(p: [f64; 3], octaves: u32, seed: u64) -> f64 {
     sum / total
 }
 
+/// By what the pattern's noise is stretched.
+pub const STRETCH: f64 = 0.5 / 0.7;
+
+/// The key of a component of [`vector_noise`], 1 to 3.
+pub fn component(seed: u64, k: u64) -> u64 {
+    seed ^ k.wrapping_mul(0x9E37_79B9_7F4A_7C15)
+}
+
 /// The pattern's noise: [`fractal_noise`] brought to 0..1. Gradient noise seldom leaves ±0.7, so it is stretched by that;
 /// what is beyond is cut off.
 pub fn unit_noise(p: [f64; 3], octaves: u32, seed: u64) -> f64 {
-    (0.5 + fractal_noise(p, octaves, seed) * (0.5 / 0.7)).clamp(0.0, 1.0)
+    (0.5 + fractal_noise(p, octaves, seed) * STRETCH).clamp(0.0, 1.0)
 }
 
 /// A displacement, each component in about −1..1, for turbulence.
 pub fn vector_noise(p: [f64; 3], octaves: u32, seed: u64) -> [f64; 3] {
-    [1u64, 2, 3].map(|k| fractal_noise(p, octaves, seed ^ k.wrapping_mul(0x9E37_79B9_7F4A_7C15)))
+    [1u64, 2, 3].map(|k| fractal_noise(p, octaves, component(seed, k)))
 }
 
 /// Distance to the nearest of the points scattered one to a unit cell.

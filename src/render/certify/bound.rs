@@ -102,6 +102,54 @@ impl Bound {
         Bound { sum: scaled(self.sum), range: scaled(self.range), form }
     }
 
+    /// The light times shares from one end of `w` to the other, which may be another at each point.
+    pub fn shared(self, p: &Polygon, w: [Span; 3]) -> Bound {
+        if w.iter().all(|s| s[0] == s[1]) {
+            return self.times(w.map(|s| s[0]));
+        }
+        let range = [0, 1, 2].map(|i| product(self.range[i], w[i]));
+        let plain = Bound::somewhere(p.area(), range);
+        let area = p.area();
+        let area = [larger(area - AREA_ERROR, 0.0), area + AREA_ERROR];
+        // What isn't negative, the light above its least value below 0, comes to no more by its shares than all of it by the largest,
+        // and to no less than all of it by the least.
+        let sum = |i: usize| {
+            let below = product([smaller(self.range[i][0], 0.0); 2], area);
+            let [lo, hi] = self.sum[i];
+            let above = wide([lo - below[1], hi - below[0]], size(self.sum[i]) + size(below));
+            let (above, below) = (product(above, w[i]), product(below, w[i]));
+            meet(wide([above[0] + below[0], above[1] + below[1]], size(above) + size(below)), plain.sum[i])
+        };
+        let form = self.form.map(|f| [0, 1, 2].map(|i| f[i] * Form::between(w[i][0], w[i][1])));
+        Bound { sum: [0, 1, 2].map(sum), range, form }
+    }
+
+    /// The same light, or all that `ceiling` says of it where that is more. (Not both: the integral counts strips, where the function that
+    /// it is of may lie outside.)
+    pub fn limited(self, p: &Polygon, ceiling: [Span; 3]) -> Bound {
+        let all = Bound::within(p, ceiling);
+        let width = |s: Span| s[1] - s[0];
+        let is_wide =
+            |i: usize| !(width(self.range[i]) < 2.0 * width(ceiling[i])) || !(width(self.sum[i]) < width(all.sum[i]));
+        if (0..3).any(is_wide) { all } else { self }
+    }
+
+    /// The light times shares that vary as these forms do.
+    pub fn through(self, p: &Polygon, w: [Form; 3]) -> Bound {
+        let spans = w.map(|f| <[f64; 2]>::from(p.range(f)));
+        // Of constants the range is wider by rounding.
+        let spans = [0, 1, 2].map(|i| if w[i] == Form::constant(w[i].c) { [w[i].c; 2] } else { spans[i] });
+        let plain = self.shared(p, spans);
+        let Some(form) = self.form else { return plain };
+        let form = [0, 1, 2].map(|i| form[i] * w[i]);
+        let first = Bound::of(p, form);
+        Bound {
+            sum: [0, 1, 2].map(|i| meet(first.sum[i], plain.sum[i])),
+            range: [0, 1, 2].map(|i| meet(first.range[i], plain.range[i])),
+            form: Some(form),
+        }
+    }
+
     /// What holds of `whole`, which was cut into the polygons of `a` and `b`, which overlap. Each point's light is that of one of
     /// both; the other's at the points of the strip has to be taken out: the strip's area times something among the values.
     pub fn joined(whole: &Polygon, (pa, a): (&Polygon, Bound), (pb, b): (&Polygon, Bound)) -> Bound {

@@ -20,8 +20,8 @@ pub struct Certifier<'w> {
     pub(super) depth: u32,
     /// Where the light surely lies that rays see which go on so many times more, and every part of that light.
     ceilings: Vec<[Span; 3]>,
-    /// The same for what each material gives back of its own light.
-    own: Vec<[Span; 3]>,
+    /// The same for what each material gives back.
+    gives: Vec<Gives>,
     /// Where the values of each pattern lie.
     patterns: Vec<[Span; 3]>,
     /// What rays that go on bring isn't looked for where it is no more than that.
@@ -33,8 +33,8 @@ impl<'w> Certifier<'w> {
     pub fn new(world: &'w World, options: &Options) -> Certifier<'w> {
         let depth = options.max_depth;
         let patterns = pattern_ranges(world);
-        let (own, ceilings) = ceilings(world, &patterns, depth);
-        Certifier { world, grid: world.camera.grid(options), depth, ceilings, own, patterns, faint: 0.0 }
+        let (gives, ceilings) = ceilings(world, &patterns, depth);
+        Certifier { world, grid: world.camera.grid(options), depth, ceilings, gives, patterns, faint: 0.0 }
     }
 
     /// For pictures that are to reach a target: then what is too faint to matter is left unknown.
@@ -70,7 +70,42 @@ impl<'w> Certifier<'w> {
 
     /// Where the own light of surface `id` lies.
     pub(super) fn own_ceiling(&self, id: u32) -> [Span; 3] {
-        self.own[self.world.primitive(id).material as usize]
+        self.gives(id).own
+    }
+
+    /// Where the light lies that surface `id` sends to rays which go on `depth` times at most, but for what goes straight
+    /// through it.
+    pub(super) fn surface_ceiling(&self, id: u32, depth: u32) -> [Span; 3] {
+        let gives = self.gives(id);
+        let straight = self.straight_through(id).is_some();
+        self.with_onward(gives, if straight { gives.mirrored } else { gives.onward }, depth)
+    }
+
+    /// Where the light lies, and every part of it, that rays see which meet some of these surfaces or none, and go on `depth`
+    /// times at most.
+    pub(super) fn ceiling_among(&self, ids: &[u32], depth: u32) -> [Span; 3] {
+        let background = self.world.background.map(|x| hull([x; 2], [0.0; 2]));
+        ids.iter().fold(background, |all, id| {
+            let gives = self.gives(*id);
+            let one = self.with_onward(gives, gives.onward, depth);
+            [0, 1, 2].map(|c| hull(all[c], one[c]))
+        })
+    }
+
+    fn gives(&self, id: u32) -> &Gives {
+        &self.gives[self.world.primitive(id).material as usize]
+    }
+
+    /// Own light and a share of what comes from further on.
+    fn with_onward(&self, gives: &Gives, share: [f64; 3], depth: u32) -> [Span; 3] {
+        let Some(depth) = depth.checked_sub(1) else { return gives.own };
+        let light = self.ceiling(depth);
+        [0, 1, 2].map(|c| [0, 1].map(|end| (gives.own[c][end] + share[c] * light[c][end]) * UP))
+    }
+
+    /// Where the values of a material's slot lie.
+    pub(super) fn slot_range(&self, slot: Slot) -> [Span; 3] {
+        slot_range(&self.patterns, slot)
     }
 
     /// Where the values of pattern `id` lie.
@@ -101,13 +136,24 @@ impl<'w> Certifier<'w> {
     }
 }
 
-/// By material: where its own light lies; by how often rays go on: where the light lies that they see. Every sum of some of
+/// What a material gives back at most.
+#[derive(Clone, Copy)]
+struct Gives {
+    /// Where its own light lies.
+    own: [Span; 3],
+    /// How much of what it mirrors.
+    mirrored: [f64; 3],
+    /// How much of what it mirrors and of what comes through it, together.
+    onward: [f64; 3],
+}
+
+/// A few roundings of each step, upwards.
+const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
+
+/// By material: what it gives back; by how often rays go on: where the light lies that they see. Every sum of some of
 /// their parts lies there, too.
-fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> (Vec<[Span; 3]>, Vec<[Span; 3]>) {
-    let slot = |s: Slot, c: usize| match s {
-        Slot::Constant(v) => [v[c]; 2],
-        Slot::Pattern(id) => patterns[id as usize][c],
-    };
+fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> (Vec<Gives>, Vec<[Span; 3]>) {
+    let slot = |s: Slot, c: usize| slot_range(patterns, s)[c];
     let magnitude = |s: Span| larger(s[0].abs(), s[1].abs());
     let lights: [f64; 3] = [0, 1, 2].map(|c| world.lights.iter().map(|l| l.color[c].abs()).sum());
     // The most light of its own, and the most of what is seen behind or mirrored, that a material gives back.
@@ -125,11 +171,15 @@ fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> (Vec<[Span; 3]
     let any_negative = world.materials.iter().any(negative)
         || world.background.iter().chain(&world.ambient).any(|x| *x < 0.0)
         || world.lights.iter().any(|l| l.color.iter().any(|x| *x < 0.0));
-    // A few roundings of each step.
-    let up = |x: f64| x * (1.0 + 1.0 / (1u64 << 40) as f64);
+    let up = |x: f64| x * UP;
     let mut all: Vec<[Span; 3]> = Vec::new();
     let span = |most: f64| if any_negative { [-most, most] } else { [0.0, most] };
-    let owns = world.materials.iter().map(|m| [0, 1, 2].map(|c| span(up(own(m, c))))).collect();
+    let gives = |m: &Surfacing| Gives {
+        own: [0, 1, 2].map(|c| span(up(own(m, c)))),
+        mirrored: [0, 1, 2].map(|c| magnitude(slot(m.reflect, c))),
+        onward: [0, 1, 2].map(|c| up(onward(m, c))),
+    };
+    let gives = world.materials.iter().map(gives).collect();
     let background = world.background.map(f64::abs);
     let mut light = [0, 1, 2].map(|c| up(larger(background[c], most(&|m| own(m, c)))));
     all.push(light.map(span));
@@ -142,7 +192,15 @@ fn ceilings(world: &World, patterns: &[[Span; 3]], depth: u32) -> (Vec<[Span; 3]
         light = next;
         all.push(light.map(span));
     }
-    (owns, all)
+    (gives, all)
+}
+
+/// Where the values of a slot lie.
+fn slot_range(patterns: &[[Span; 3]], slot: Slot) -> [Span; 3] {
+    match slot {
+        Slot::Constant(v) => v.map(|x| [x; 2]),
+        Slot::Pattern(id) => patterns[id as usize],
+    }
 }
 
 /// Where the values of each pattern lie.

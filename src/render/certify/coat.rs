@@ -4,15 +4,17 @@ use super::super::material::Slot;
 use super::super::pattern::{PatternNode, Rows};
 use super::super::surface_pattern::PatternFrame;
 use super::super::texture::Edge;
+use super::blend::Stops;
 use super::bound::Bound;
 use super::lit::Shade;
 use super::met::Met;
+use super::noise;
 use super::polygon::{AREA_ERROR, Polygon};
 use super::study::Study;
 use super::texels::Texels;
 use super::waves::{Parity, parity};
 use crate::math::Form;
-use crate::math::real::{dot, three};
+use crate::math::real::{Real, dot, three};
 use crate::scene::{Filter, Mapping};
 
 /// Most lines of one pattern through a polygon that it is cut at.
@@ -52,6 +54,18 @@ impl<'s> Spot<'s> {
         })
     }
 
+    /// The coordinates themselves.
+    fn point(&self) -> [Form; 3] {
+        self.p.map(|x| x.fixed.map_or_else(|| x.over / self.w, Form::constant))
+    }
+
+    /// Another point of the same surface.
+    fn moved(&self, p: [Form; 3]) -> Spot<'s> {
+        let one = Form::constant(1.0);
+        let p = p.map(|over| Coordinate { over, fixed: None });
+        Spot { p, local: self.local.map(|x| x / self.w), w: one, spaces: self.spaces }
+    }
+
     fn within(&self, p: [Coordinate; 3]) -> Spot<'s> {
         Spot { p, local: self.local, w: self.w, spaces: self.spaces }
     }
@@ -66,7 +80,7 @@ impl<'s> Spot<'s> {
 }
 
 /// Goes on with the pattern's colour.
-type Coloured<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, [Form; 3]) -> Bound;
+pub type Coloured<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, [Form; 3]) -> Bound;
 
 impl<'c> Study<'c> {
     /// The light of a surface with its material's colour.
@@ -160,25 +174,19 @@ impl<'c> Study<'c> {
     }
 
     /// The colours of pattern `id`, each where it is seen.
-    fn coloured(&mut self, p: &Polygon, id: u32, at: &Spot<'_>, then: Coloured<'_, 'c>) -> Bound {
+    pub fn coloured(&mut self, p: &Polygon, id: u32, at: &Spot<'_>, then: Coloured<'_, 'c>) -> Bound {
         let patterns = &self.scene.world.patterns;
         match &patterns.nodes[id as usize] {
             PatternNode::Constant(c) => then(self, p, c.map(Form::constant)),
             PatternNode::Checker(a, b, size) => self.cells(p, at, *size, &mut |study, q, parity| match parity {
                 Some(even) => study.coloured(q, if even { *a } else { *b }, at, then),
-                None => {
-                    let any = study.scene.pattern_range(id);
-                    then(study, q, any.map(|[lo, hi]| Form::between(lo, hi)))
-                }
+                None => study.anything(q, id, then),
             }),
             PatternNode::Stripes(a, b, axis, size) => {
                 let line = at.p[*axis as usize];
                 self.lines(p, line, (at.w, *size), None, &mut |study, q, k| match k {
                     Some(k) => study.coloured(q, if k % 2 == 0 { *a } else { *b }, at, then),
-                    None => {
-                        let any = study.scene.pattern_range(id);
-                        then(study, q, any.map(|[lo, hi]| Form::between(lo, hi)))
-                    }
+                    None => study.anything(q, id, then),
                 })
             }
             PatternNode::InSpace(child, space) => {
@@ -208,16 +216,42 @@ impl<'c> Study<'c> {
             PatternNode::Multiply(a, b) => self.coloured(p, *a, at, &mut |study, q, x| {
                 study.coloured(q, *b, at, &mut |study, q, y| then(study, q, three!(c => x[c] * y[c])))
             }),
-            // Bent spaces, noise and pictures lie somewhere in their range.
-            _ => {
-                let any = self.scene.pattern_range(id);
-                then(self, p, any.map(|[lo, hi]| Form::between(lo, hi)))
+            PatternNode::Blend(stops, by) => match Stops::all(stops) {
+                Some(all) => self.coloured(p, *by, at, &mut |study, q, x| {
+                    study.blended(q, all, x[0].times((stops.len() - 1) as f64), at, then)
+                }),
+                None => self.anything(p, id, then),
+            },
+            PatternNode::Within(child, least, most) => self.coloured(p, *child, at, &mut |study, q, x| {
+                then(study, q, x.map(|x| x.max(Form::constant(*least)).min(Form::constant(*most))))
+            }),
+            PatternNode::Noise(a, b, octaves, seed) => match noise::unit(p, at.point(), *octaves, *seed) {
+                Some(share) => self.mixed(p, (*a, *b), [share; 3], at, then),
+                None => self.anything(p, id, then),
+            },
+            PatternNode::Turbulence(child, amount, octaves, seed) => {
+                let q = at.point();
+                match noise::vector(p, q, *octaves, *seed) {
+                    Some(v) => {
+                        let moved = at.moved(three!(i => q[i] + v[i].times(*amount)));
+                        self.coloured(p, *child, &moved, then)
+                    }
+                    None => self.anything(p, id, then),
+                }
             }
+            // What is left lies somewhere in their range.
+            _ => self.anything(p, id, then),
         }
     }
 
+    /// Whatever pattern `id` may be.
+    fn anything(&mut self, p: &Polygon, id: u32, then: Coloured<'_, 'c>) -> Bound {
+        let any = self.scene.pattern_range(id);
+        then(self, p, any.map(|[lo, hi]| Form::between(lo, hi)))
+    }
+
     /// From pattern `a` to pattern `b` by `share`.
-    fn mixed(
+    pub fn mixed(
         &mut self,
         p: &Polygon,
         (a, b): (u32, u32),

@@ -21,14 +21,15 @@ pub struct Shade {
     pub tinted: [Form; 3],
 }
 
-/// The shares of a material's terms that are the same everywhere.
+/// The shares of a material's terms: where a pattern decides, anything that it may be.
 struct Shares {
-    ambient: [f64; 3],
-    diffuse: [f64; 3],
-    specular: [f64; 3],
-    shininess: f64,
-    reflect: [f64; 3],
-    transmit: [f64; 3],
+    ambient: [Form; 3],
+    diffuse: [Form; 3],
+    specular: [Form; 3],
+    /// `None` where a pattern decides.
+    shininess: Option<f64>,
+    reflect: [Span; 3],
+    transmit: [Span; 3],
 }
 
 impl Certifier<'_> {
@@ -43,18 +44,17 @@ impl Certifier<'_> {
 }
 
 impl Shares {
-    /// `None` where a pattern decides.
-    fn of(met: &Met<'_>) -> Option<Shares> {
-        let constant = |s: Slot| if let Slot::Constant(c) = s { Some(c) } else { None };
+    fn of(scene: &Certifier<'_>, met: &Met<'_>) -> Shares {
         let m = met.surfacing;
-        Some(Shares {
-            ambient: constant(m.ambient)?,
-            diffuse: constant(m.diffuse)?,
-            specular: constant(m.specular)?,
-            shininess: constant(m.shininess)?[0],
-            reflect: constant(m.reflect)?,
-            transmit: constant(m.transmit)?,
-        })
+        let form = |s: Slot| scene.slot_range(s).map(|[lo, hi]| Form::between(lo, hi));
+        Shares {
+            ambient: form(m.ambient),
+            diffuse: form(m.diffuse),
+            specular: form(m.specular),
+            shininess: if let Slot::Constant(c) = m.shininess { Some(c[0]) } else { None },
+            reflect: scene.slot_range(m.reflect),
+            transmit: scene.slot_range(m.transmit),
+        }
     }
 }
 
@@ -62,24 +62,23 @@ impl<'c> Study<'c> {
     /// The light that a sheet sends along the rays, but for what goes straight through it.
     pub fn surface_light(&mut self, p: &Polygon, ray: &Bundle, sheet: &Sheet, depth: u32) -> Bound {
         let world = self.scene.world;
-        let Some(met) = Met::new(world, ray, sheet) else { return self.unknown(p) };
-        let Some(shares) = Shares::of(&met) else { return self.unknown(p) };
-        if met.surfacing.bump.is_some() || !met.is_useful(p) {
-            return self.unknown(p);
-        }
+        let met = Met::new(world, ray, sheet).filter(|met| met.is_useful(p));
+        let Some(met) = met else { return Bound::within(p, self.scene.surface_ceiling(sheet.id, depth)) };
+        let shares = Shares::of(self.scene, &met);
         let outer = std::mem::replace(&mut self.ceiling, self.scene.own_ceiling(sheet.id));
         let own = self.own_light(p, &met, &shares);
         self.ceiling = outer;
-        if depth == 0 || !(met.surfacing.mirrors() || met.surfacing.ior.is_some()) {
+        let straight = self.scene.straight_through(sheet.id).is_some();
+        let goes_through = met.surfacing.lets_through() && !straight;
+        if depth == 0 || !(met.surfacing.mirrors() || goes_through) {
             return own;
         }
-        if met.surfacing.ior.is_some() {
-            // Where it goes isn't followed; how much of it comes back is known.
-            let share = three!(c => shares.reflect[c].abs() + shares.transmit[c].abs());
-            return own.plus(Bound::within(p, self.scene.ceiling(depth - 1)).times(share));
+        if goes_through {
+            return own.plus(self.bent_light(p, &met, (shares.reflect, shares.transmit), depth - 1));
         }
-        let back = self.onward(p, shares.reflect, depth - 1, |study| match met.at {
-            Some(o) if met.bent.is_none() => {
+        let reflect = shares.reflect.map(|[lo, hi]| Form::between(lo, hi));
+        let back = self.onward(p, reflect, (depth - 1, 0.0), |study| match met.at {
+            Some(o) if met.bent.is_none() && met.surfacing.bump.is_none() => {
                 let d = mirrored(met.d, met.n);
                 study.seen(p, &Bundle { o, d, start: Some(met.start), rect: None }, depth - 1)
             }
@@ -91,14 +90,18 @@ impl<'c> Study<'c> {
     /// Ambient light and that of all lights.
     fn own_light(&mut self, p: &Polygon, met: &Met<'_>, shares: &Shares) -> Bound {
         let world = self.scene.world;
-        let ambient = three!(c => Form::constant(shares.ambient[c]).times(world.ambient[c]));
+        let ambient = three!(c => shares.ambient[c].times(world.ambient[c]));
         let none = [Form::constant(0.0); 3];
         let base = Shade { plain: none, tinted: ambient };
         let lights = if met.surfacing.lit { &world.lights[..] } else { &[] };
         if lights.is_empty() {
             return self.painted(p, met, &base);
         }
-        let ns = met.bent.unwrap_or(met.n);
+        // Where bumps turn a normal to isn't followed.
+        let ns = match met.surfacing.bump {
+            Some(_) => [Form::ALL; 3],
+            None => met.bent.unwrap_or(met.n),
+        };
         let mut sum: Option<Bound> = None;
         for (number, light) in lights.iter().enumerate() {
             // The first one takes the ambient light along: one picture of the pattern less.
@@ -114,14 +117,14 @@ impl<'c> Study<'c> {
                     return study.painted(q, met, &base);
                 }
                 let shade = Shade {
-                    plain: three!(c => base.plain[c] + (arrives[c] * terms.high).times(shares.specular[c])),
-                    tinted: three!(c => base.tinted[c] + (arrives[c] * terms.lambert).times(shares.diffuse[c])),
+                    plain: three!(c => base.plain[c] + (arrives[c] * terms.high) * shares.specular[c]),
+                    tinted: three!(c => base.tinted[c] + (arrives[c] * terms.lambert) * shares.diffuse[c]),
                 };
                 study.painted(q, met, &shade)
             };
-            let mut tests = vec![dot(ns, to)];
-            if met.bent.is_some() {
-                tests.push(dot(met.n, to));
+            let mut tests = vec![dot(met.n, to)];
+            if met.bent.is_some() && met.surfacing.bump.is_none() {
+                tests.push(dot(ns, to));
             }
             let one = self.split_all(p, &tests, &mut |study, q, faces| match faces {
                 true => study.shadowed(q, met, (number, to), fin),
@@ -193,12 +196,14 @@ impl<'c> Study<'c> {
                     }
                     sheet.tests.push(ahead);
                 }
-                if sheet.tests.is_empty() && factor == [0.0; 3] {
+                if sheet.tests.is_empty() && factor == [0.0; 3] && !sheet.veil {
                     return fin(self, p, [[0.0; 2]; 3]);
                 }
                 blocks.push((sheet, factor));
             }
         }
+        // What is dark all the same needn't know what veils hide.
+        blocks.sort_by_key(|(sheet, _)| sheet.veil);
         self.past(p, &blocks, [1.0; 3], fin)
     }
 
@@ -208,6 +213,9 @@ impl<'c> Study<'c> {
             return fin(self, p, seen.map(|s| [s; 2]));
         };
         self.split_all(p, &sheet.tests, &mut |study, q, met| {
+            if met && sheet.veil {
+                return fin(study, q, [[0.0, 1.0]; 3]);
+            }
             let left = if met { three!(c => seen[c] * factor[c]) } else { seen };
             match left == [0.0; 3] {
                 true => fin(study, q, [[0.0; 2]; 3]),
@@ -232,9 +240,9 @@ impl Terms {
         let unit = |f: Form| if f.is_known() { f } else { Form::between(0.0, 1.0) };
         let lambert = unit(dot(ns, to) * length);
         let mut high = Form::constant(0.0);
-        if shares.specular != [0.0; 3] {
+        if shares.specular != [high; 3] {
             let along = dot(mirrored(met.d, ns), to) * length * dot(met.d, met.d).reciprocal_root();
-            high = along.power(shares.shininess);
+            high = shares.shininess.map_or(Form::between(0.0, 1.0), |n| along.power(n));
         }
         Terms { lambert, high }
     }

@@ -5,6 +5,8 @@
 //! can tell apart is charged. See [`Certifier::region`].
 
 mod asked;
+mod bent;
+mod blend;
 mod bound;
 mod budget;
 mod bundle;
@@ -15,6 +17,7 @@ mod leaves;
 mod lit;
 mod looks;
 mod met;
+mod noise;
 mod picture;
 mod pixel;
 mod polygon;

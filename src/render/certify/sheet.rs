@@ -32,6 +32,8 @@ pub struct Sheet {
     pub convex: bool,
     /// Whether it is flat.
     pub flat: bool,
+    /// Whether it only stands around a surface that isn't followed: beyond it there may be anything.
+    pub veil: bool,
 }
 
 /// What isn't covered.
@@ -116,7 +118,10 @@ impl Sheets<'_> {
                 wanted.leaving |= !tube.caps && own.is_none();
                 self.tube(id, &ray, tube, wanted, own.map(|o| o.part))
             }
-            Kind::Ring(_) => Err(Unknown),
+            Kind::Ring(_) if own.is_some() => Err(Unknown),
+            Kind::Ring(ring) => {
+                self.veil(id, &ray, (ring.r + ring.tube) / ring.scale * WIDER, ring.tube / ring.scale * WIDER)
+            }
             Kind::Triangle(_) | Kind::Mesh(_) => Ok(()),
         }
     }
@@ -161,7 +166,7 @@ impl Sheets<'_> {
         tests.extend(within(ray, nearness));
         let t = nearness.reciprocal();
         let convex = matches!(self.scene.world.primitives()[id as usize].kind, Kind::Cuboid(_) | Kind::Tube(_));
-        self.push(Sheet { id, part, inside: up != turned, tests, nearness, t, convex, flat: true });
+        self.push(Sheet { id, part, inside: up != turned, tests, nearness, t, convex, flat: true, veil: false });
         Ok(())
     }
 
@@ -240,6 +245,21 @@ impl Sheets<'_> {
         Ok(())
     }
 
+    /// The cylinder around a shape that isn't followed, of this radius and half this height: what misses it misses the shape. For
+    /// rays that surely start outside of it.
+    fn veil(&mut self, id: u32, ray: &LocalRay<Form>, radius: f64, half: f64) -> Result<(), Unknown> {
+        let (lo, hi) = self.p.range(ray.o[1] + ray.o_lo[1]);
+        let rho2 = ray.o[0] * ray.o[0] + ray.o[2] * ray.o[2];
+        if !(lo > half || hi < -half || self.p.range(rho2).0 > radius * radius * WIDER) {
+            return Err(Unknown);
+        }
+        let first = self.found.len();
+        let around = Tube { radius, slope: 0.0, bottom: -half, top: half, caps: true };
+        self.tube(id, ray, &around, Wanted { entering: true, leaving: false }, None)?;
+        self.found[first..].iter_mut().for_each(|sheet| sheet.veil = true);
+        Ok(())
+    }
+
     /// Both roots of a quadric, between the tests that `ends` makes of t.
     fn quadric(
         &mut self,
@@ -280,7 +300,17 @@ impl Sheets<'_> {
             let t = t0 + shift * inverse;
             let mut tests = vec![disc, t];
             tests.extend(ends(t).into_iter().flatten());
-            self.push(Sheet { id, part: SIDE, inside, tests, nearness: t.reciprocal(), t, convex: true, flat: false });
+            self.push(Sheet {
+                id,
+                part: SIDE,
+                inside,
+                tests,
+                nearness: t.reciprocal(),
+                t,
+                convex: true,
+                flat: false,
+                veil: false,
+            });
         }
         Ok(())
     }
@@ -312,6 +342,7 @@ impl Sheets<'_> {
             t,
             convex: true,
             flat: false,
+            veil: false,
         });
         Ok(())
     }
@@ -346,10 +377,13 @@ impl Sheets<'_> {
             tests.push(if behind == (round > 0.0) { volume } else { -volume });
         }
         let t = nearness.reciprocal();
-        self.push(Sheet { id, part: 0.0, inside: behind, tests, nearness, t, convex: false, flat: true });
+        self.push(Sheet { id, part: 0.0, inside: behind, tests, nearness, t, convex: false, flat: true, veil: false });
         Ok(())
     }
 }
+
+/// More than the few roundings of a veil's lengths.
+const WIDER: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// The squared distance from the y axis of the point at 1/s, times s².
 fn squared_distance(ray: &LocalRay<Form>, s: Form) -> Form {

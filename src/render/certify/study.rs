@@ -20,6 +20,8 @@ pub struct Study<'c> {
     pub undivided: bool,
     /// Whether a mean was taken that is the better known the wider the region is.
     pub in_rows: bool,
+    /// Surfaces of glass so far.
+    pub bends: u32,
     /// The most weight of the rays at hand.
     weight: f64,
     /// Cuts so far.
@@ -32,7 +34,7 @@ pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> B
 impl<'c> Study<'c> {
     /// With nothing known and nothing spent.
     pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
-        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, weight: 1.0, pieces: 0 }
+        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, bends: 0, weight: 1.0, pieces: 0 }
     }
 
     /// What is known of the light in a rectangle of the picture: left, top, right, bottom.
@@ -51,24 +53,27 @@ impl<'c> Study<'c> {
         Bound::within(p, self.ceiling)
     }
 
-    /// The light of rays that go on up to `depth` times more and carry these shares: looked for, unless it is too faint to matter.
+    /// The light of rays that go on up to `depth` times more and carry these shares: looked for, unless it is too faint to matter or
+    /// of less than the `least` weight.
     pub fn onward(
         &mut self,
         p: &Polygon,
-        shares: [f64; 3],
-        depth: u32,
+        shares: [Form; 3],
+        (depth, least): (u32, f64),
         look: impl FnOnce(&mut Self) -> Bound,
     ) -> Bound {
         let ceiling = self.scene.ceiling(depth);
-        let most = |of: &dyn Fn(usize) -> f64| (0..3).map(|c| shares[c].abs() * of(c)).fold(0.0, larger);
-        if self.weight * most(&|c| ceiling[c][1] - ceiling[c][0]) <= self.scene.faint {
-            return Bound::within(p, ceiling).times(shares);
+        let sizes = shares.map(|f| p.range(f)).map(|(lo, hi)| larger(lo.abs(), hi.abs()));
+        let most = |of: &dyn Fn(usize) -> f64| (0..3).map(|c| sizes[c] * of(c)).fold(0.0, larger);
+        let weight = self.weight * most(&|_| 1.0);
+        if weight < least || self.weight * most(&|c| ceiling[c][1] - ceiling[c][0]) <= self.scene.faint {
+            return Bound::within(p, ceiling).through(p, shares);
         }
         let outer = (self.weight, self.ceiling);
-        (self.weight, self.ceiling) = (self.weight * most(&|_| 1.0), ceiling);
-        let bound = look(self);
+        (self.weight, self.ceiling) = (weight, ceiling);
+        let bound = look(self).limited(p, ceiling);
         (self.weight, self.ceiling) = outer;
-        bound.times(shares)
+        bound.through(p, shares)
     }
 
     /// Goes both ways of the test g ≥ 0, each on its side of the cut.

@@ -30,8 +30,9 @@ impl<'c> Study<'c> {
     fn looked_at(&mut self, p: &Polygon, ray: &Bundle, depth: u32) -> Bound {
         let scene = self.scene;
         let Some(candidates) = ray.candidates(scene, p) else { return self.unknown(p) };
+        self.ceiling = scene.ceiling_among(&candidates, depth);
         let mut sheets = Sheets { scene, p, ray, found: Vec::new() };
-        for id in candidates {
+        for &id in &candidates {
             if sheets.add(id).is_err() {
                 return self.unknown(p);
             }
@@ -39,7 +40,7 @@ impl<'c> Study<'c> {
         let mut found = sheets.found;
         let key = |s: &Sheet| if s.nearness.is_known() { s.nearness.c } else { f64::INFINITY };
         found.sort_by(|a, b| key(b).total_cmp(&key(a)).then(a.id.cmp(&b.id)));
-        let view = View { ray, sheets: &found, depth };
+        let view = View { ray, sheets: &found, candidates: &candidates, depth };
         self.gathered(p, &view, 0, &mut Hits::default())
     }
 
@@ -55,6 +56,9 @@ impl<'c> Study<'c> {
             return self.unknown(p);
         }
         self.split_all(p, &sheet.tests, &mut |study, q, met| {
+            if met && sheet.veil {
+                return study.unknown(q);
+            }
             if met {
                 hits.met.push(next);
             }
@@ -111,7 +115,11 @@ impl<'c> Study<'c> {
                 let mut rest = hits.clone();
                 rest.met.retain(|&i| i != first);
                 let behind = View { depth: view.depth - 1, ..*view };
-                light.plus(self.onward(p, share, behind.depth, |study| study.in_order(p, &behind, &rest)))
+                let seen_behind = |study: &mut Study<'c>| {
+                    study.ceiling = study.scene.ceiling_among(view.candidates, behind.depth);
+                    study.in_order(p, &behind, &rest)
+                };
+                light.plus(self.onward(p, share.map(Form::constant), (behind.depth, 0.0), seen_behind))
             }
         }
     }
@@ -122,6 +130,8 @@ impl<'c> Study<'c> {
 struct View<'v> {
     ray: &'v Bundle,
     sheets: &'v [Sheet],
+    /// The surfaces that they may meet.
+    candidates: &'v [u32],
     depth: u32,
 }
 
@@ -129,7 +139,8 @@ impl View<'_> {
     /// Whether sheet number `hit` surely hides `other` on `p`.
     fn hides(&self, study: &Study<'_>, p: &Polygon, hit: usize, other: &Sheet) -> bool {
         let hit = &self.sheets[hit];
-        study.scene.world.surfacing(hit.id).transmit.is_zero() && p.range(hit.nearness).0 > p.range(other.nearness).1
+        let opaque = study.scene.straight_through(hit.id).is_none_or(|share| share == [0.0; 3]);
+        opaque && p.range(hit.nearness).0 > p.range(other.nearness).1
     }
 
     /// Whether of one shape's two sheets, if both are met, `a` comes first, or it doesn't matter: a convex shape is entered once

@@ -90,6 +90,12 @@ impl Builder {
         self.0.roots.push(node);
     }
 
+    /// The material made last.
+    fn last(&mut self) -> &mut Material {
+        let last = self.0.materials.len() - 1;
+        &mut self.0.materials[last]
+    }
+
     fn light(&mut self, at: DVec3, color: [f64; 3]) {
         let node = self.node(NodeKind::Light(Light { at, color: Color(color), power: 1.0 }), None);
         self.0.roots.push(node);
@@ -145,5 +151,84 @@ pub(in crate::render) fn every_shape() -> Scene {
     );
     b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
     b.light(v(-40.0, 30.0, -20.0), [0.2, 0.2, 0.4]);
+    b.0
+}
+
+/// Rings, which aren't followed, over a floor: what passes them by is known.
+fn rings() -> Scene {
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
+    b.shape(
+        Shape::Plane { through: v(0.0, -3.0, 0.0), normal: DVec3::Y },
+        Look { color: PatternKind::Checker { a: x, b: y, size: 4.0 }, specular: 0.0, reflect: 0.3, transmit: 0.0 },
+    );
+    let ring = |at: DVec3, axis: DVec3, r: f64| Shape::Torus { at, r, tube: 0.4 * r, axis };
+    b.shape(ring(v(0.0, 0.0, -20.0), v(0.1, 0.2, 1.0), 2.0), plain([0.8, 0.3, 0.2]));
+    b.shape(ring(v(4.0, -2.0, -25.0), DVec3::Y, 1.5), plain([0.2, 0.3, 0.8]));
+    let turn = Affine::translation(v(-4.0, -1.0, -22.0)).compose(&Affine::scaling(v(1.0, 0.5, 1.7)));
+    b.turned(ring(DVec3::ZERO, v(1.0, 1.0, 0.0), 1.0), plain([0.5; 3]), turn);
+    b.shape(Shape::Sphere { at: v(0.5, 0.2, -16.0), r: 0.8 }, plain([0.9, 0.8, 0.1]));
+    b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
+    b.0
+}
+
+/// What is known by range alone: bumps, shares that patterns decide, noise, glass, before a wall and over a floor of them.
+fn by_range() -> Scene {
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
+    let noise = |a, b, seed| PatternKind::Noise { a, b, octaves: 3, seed };
+    let look = |color| Look { color, specular: 0.2, reflect: 0.0, transmit: 0.0 };
+    let (none, some) = (b.gray(0.0), b.gray(0.5));
+    let share = b.pattern(noise(none, some, 5));
+    let checks = b.pattern(PatternKind::Checker { a: some, b: none, size: 0.7 });
+    let heights = b.pattern(PatternKind::Brick { mortar: none, brick: some, size: [1.6, 0.7], gap: 0.1 });
+    let bumps = b.pattern(noise(none, some, 6));
+
+    b.shape(Shape::Plane { through: v(0.0, -3.0, 0.0), normal: DVec3::Y }, look(noise(x, y, 1)));
+    b.last().reflect = share;
+    b.shape(Shape::Plane { through: v(0.0, 0.0, -40.0), normal: DVec3::Z }, look(noise(y, x, 2)));
+    b.last().bump = Some(heights);
+    b.shape(Shape::Sphere { at: v(-3.0, -1.0, -22.0), r: 2.0 }, look(PatternKind::Constant(Color([0.7, 0.4, 0.2]))));
+    (b.last().diffuse, b.last().specular, b.last().reflect) = (share, checks, checks);
+    b.shape(
+        Shape::Sphere { at: v(1.0, -0.5, -19.0), r: 1.5 },
+        Look { transmit: 0.9, ..look(PatternKind::Constant(Color([0.0; 3]))) },
+    );
+    b.last().ior = Some(1.5);
+    b.shape(
+        Shape::Sphere { at: v(4.5, -1.0, -24.0), r: 2.0 },
+        Look { reflect: 0.3, ..look(PatternKind::Cells { a: x, b: y, seed: 3 }) },
+    );
+    (b.last().bump, b.last().shininess) = (Some(bumps), share);
+    b.shape(
+        Shape::Disc { at: v(-1.0, 2.5, -18.0), normal: v(0.3, 0.2, 1.0), r: 1.8, hole: 0.0 },
+        look(PatternKind::Constant(Color([0.3, 0.5, 0.4]))),
+    );
+    b.last().transmit = checks;
+    b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
+    b.light(v(-20.0, 10.0, 5.0), [0.2, 0.2, 0.4]);
+    b.0
+}
+
+/// Glass of every closed shape over a checkered floor, before a ball.
+fn glasses() -> Scene {
+    let mut b = Builder::new();
+    let [x, y] = b.two([0.9, 0.9, 0.85], [0.15, 0.35, 0.2]);
+    b.shape(
+        Shape::Plane { through: v(0.0, -3.0, 0.0), normal: DVec3::Y },
+        Look { color: PatternKind::Checker { a: x, b: y, size: 3.0 }, ..plain([0.0; 3]) },
+    );
+    b.shape(Shape::Sphere { at: v(0.0, 1.0, -40.0), r: 4.0 }, plain([0.8, 0.3, 0.2]));
+    let shapes = [
+        Shape::Sphere { at: v(0.0, -0.5, -20.0), r: 2.0 },
+        Shape::Box { from: v(3.0, -2.9, -22.0), to: v(5.5, 0.5, -19.0) },
+        Shape::Cylinder { from: v(-4.0, -2.9, -20.0), to: v(-3.6, 1.0, -21.0), r: 1.2, caps: true },
+        Shape::Disc { at: v(2.2, 2.5, -17.0), normal: v(0.3, 0.2, 1.0), r: 1.0, hole: 0.0 },
+    ];
+    for shape in shapes {
+        b.shape(shape, Look { specular: 0.5, reflect: 0.02, transmit: 0.95, ..plain([0.0; 3]) });
+        b.last().ior = Some(1.5);
+    }
+    b.light(v(30.0, 45.0, 20.0), [0.7, 0.7, 0.6]);
     b.0
 }

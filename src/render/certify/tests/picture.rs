@@ -74,6 +74,13 @@ fn the_same_pixels_for_any_number_of_threads_and_in_a_part() {
     }
 }
 
+#[test]
+fn pixels_beside_rings_are_proved() {
+    let (sum, broken) = kept(&rings(), (48, 27), &Target { samples: 4096, ..Target::new(8.0) });
+    assert_eq!(broken, 0);
+    assert!(sum.proved > 800, "beside the rings and their shadows: {sum:?}");
+}
+
 /// Writes down what it is told, and cancels after some blocks.
 struct Witness {
     told: Mutex<Vec<Option<[f32; 3]>>>,
