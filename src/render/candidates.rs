@@ -74,7 +74,7 @@ impl Candidates {
         keep: impl FnMut(&Bounds) -> bool,
         keep_plane: impl FnMut([f64; 3], f64) -> bool,
     ) {
-        let rays = if self.vain > VAIN && self.vain % AGAIN != 0 { 0 } else { rays };
+        let rays = if self.vain > VAIN && !self.vain.is_multiple_of(AGAIN) { 0 } else { rays };
         self.gather(world, rays, keep, keep_plane);
         self.vain = if self.tree { self.vain.wrapping_add(1) } else { 0 };
     }
