@@ -101,7 +101,7 @@ def chosen(report):
         p = points[i]
         better = p["seconds"] <= own["seconds"] and all(worst(p, what) <= worst(own, what) for what in ("max", "rmse"))
         if better and p["depth"] == own["depth"] and p["precision"] == own["precision"]:
-            return f"{p['setting']}: {milliseconds(p)}, errs by {worst(p, 'max'):.1f}, RMSE {worst(p, 'rmse'):.2f}; better and quicker"
+            return f"{told(p)}; better and quicker"
     if report["knee"] is None:
         return "its own"
     return f"{told(points[report['knee']])}; the knee"
@@ -118,15 +118,11 @@ def thirty_two(args, scene, desk, large, report):
     times = {"f64": [], "f32": []}
     for _ in range(RUNS):
         for precision, seconds in times.items():
-            command = [args.rtdsl, "render", scene, "-q", "-o", desk / "p.png", "--stats", "json", "--size", large]
-            done = subprocess.run(
-                [str(c) for c in [*command, "--aa", "grid:2", "--threads", "1", "--precision", precision]],
-                capture_output=True,
-                text=True,
-            )
-            if done.returncode != 0:
-                return "can't: " + done.stderr.splitlines()[0].removeprefix("error: ")
-            seconds.append(json.loads(done.stdout)["seconds"]["render"])
+            options = ["--size", large, "--aa", "grid:2", "--threads", "1", "--precision", precision]
+            try:
+                seconds.append(render(args, scene, desk, *options)["seconds"]["render"])
+            except RuntimeError as error:
+                return "can't: " + str(error).splitlines()[0].removeprefix("error: ")
     changes = [p["change"] for p in report["points"] if p["precision"] == "f32"]
     change = f", changes {changes[0]:.1f}" if changes else ""
     return f"{min(times['f64']) / min(times['f32']):.2f} × as quick{change}"

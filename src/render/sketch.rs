@@ -56,8 +56,7 @@ pub fn render(
     if !is_whole || !sketch.pass(last, (part, progress), cancel) {
         return None;
     }
-    let rows = sketch.film.pixels.chunks(wide.width as usize).skip((part.y - y) as usize).take(part.height as usize);
-    let pixels = rows.flat_map(|row| &row[(part.x - x) as usize..][..part.width as usize]).copied().collect();
+    let pixels = rows(&mut sketch.film.pixels, wide, part).concat();
     let film = Film { width: part.width, height: part.height, pixels };
     let threads = useful(options.threads, wide.height.div_ceil(BAND) as usize);
     Some(Rendered { film, rays: sketch.rays, threads, certificate: None })
@@ -116,7 +115,7 @@ impl<'w> Sketch<'w> {
         }
         let is_whole = !cancel.load(Relaxed);
         if is_whole {
-            tell(&mut self.film.pixels, all, (part, progress));
+            progress.finished(part, &rows(&mut self.film.pixels, all, part));
         }
         is_whole
     }
@@ -218,11 +217,10 @@ fn note_differences(a: &[u8], b: &[u8], most: u8, differ: &mut [u8]) {
     }
 }
 
-/// Tells of the pixels of `all` that are in `part` of it.
-fn tell(pixels: &mut [[f32; 3]], all: Crop, (part, progress): (Crop, &dyn Progress)) {
+/// Of the pixels of `all`, the rows of `part` of it.
+fn rows(pixels: &mut [[f32; 3]], all: Crop, part: Crop) -> Vec<&mut [[f32; 3]]> {
     let rows = pixels.chunks_mut(all.width.max(1) as usize).skip((part.y - all.y) as usize).take(part.height as usize);
-    let rows: Vec<_> = rows.map(|row| &mut row[(part.x - all.x) as usize..][..part.width as usize]).collect();
-    progress.finished(part, &rows);
+    rows.map(|row| &mut row[(part.x - all.x) as usize..][..part.width as usize]).collect()
 }
 
 #[cfg(test)]

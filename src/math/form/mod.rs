@@ -185,6 +185,12 @@ impl<const MUTANT: u8> Form<MUTANT> {
         self.line(RECIPROCAL_ROOT, m, (base, base + most), 6.0 * (base + most) + 9.0 * most)
     }
 
+    /// A share: self between 0 and 1, and beyond them the nearer; anything between, where nothing is known.
+    pub fn share(self) -> Self {
+        let one = Form::constant(1.0);
+        if self.is_known() { one - (one - self.positive_part()).positive_part() } else { Form::between(0.0, 1.0) }
+    }
+
     /// The larger of self and 0: the line through both ends lies above the kink, and its parallel through 0 below.
     pub fn positive_part(self) -> Self {
         let (lo, hi) = (self.lo(), self.hi());

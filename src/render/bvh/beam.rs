@@ -72,9 +72,7 @@ impl Spread {
             d: [range(d[0], alive), range(d[1], alive), range(d[2], alive)],
         }
     }
-}
 
-impl Spread {
     /// Whether the rays run so much alike that a box which the beam meets is met by most of them.
     #[inline(always)]
     pub fn is_narrow(&self) -> bool {

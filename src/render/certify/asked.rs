@@ -175,20 +175,17 @@ impl<'w> Picture<'w> {
     }
 
     fn finished(mut self) -> Rendered {
-        if let (true, Some(film)) = (self.pixels.is_empty(), self.sketch.take()) {
-            let Picture { options, accuracy, reached, pixels, rays, .. } = self;
-            let summary = Summary { open: film.pixels.len(), ..Summary::default() };
-            let certificate = Some(Box::new(Certificate { accuracy, reached, summary, pixels }));
-            return Rendered { film, rays, threads: threads(options), certificate };
+        if !self.pixels.is_empty() {
+            self.take_guesses();
         }
-        self.take_guesses();
-        let Picture { options, accuracy, reached, pixels, rays, .. } = self;
+        let Picture { options, accuracy, reached, pixels, rays, sketch, .. } = self;
         let part = options.crop_or_all();
-        let summary = Summary::of(&pixels, reached);
-        let film = Film {
-            width: part.width,
-            height: part.height,
-            pixels: pixels.iter().map(|p| p.value.map(|v| v as f32)).collect(),
+        let (summary, film) = match sketch {
+            Some(film) => (Summary { open: film.pixels.len(), ..Summary::default() }, film),
+            None => {
+                let light = pixels.iter().map(|p| p.value.map(|v| v as f32)).collect();
+                (Summary::of(&pixels, reached), Film { width: part.width, height: part.height, pixels: light })
+            }
         };
         let certificate = Some(Box::new(Certificate { accuracy, reached, summary, pixels }));
         Rendered { film, rays, threads: threads(options), certificate }

@@ -48,7 +48,7 @@ impl<'c> Study<'c> {
             let (lo, hi) = q.range(bent.reflectance);
             // Near the critical angle that is all there is to know.
             let share = match hi - lo < 1.0 {
-                true => one - (one - bent.reflectance.positive_part()).positive_part(),
+                true => bent.reflectance.share(),
                 false => Form::between(0.0, 1.0),
             };
             let back = three!(c => reflect[c] + transmit[c] * share);

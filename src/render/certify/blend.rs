@@ -33,10 +33,7 @@ impl<'c> Study<'c> {
         let (first, last) = (pair(lo), pair(hi));
         if first == last {
             let s = x - Form::constant(first as f64);
-            let one = Form::constant(1.0);
-            let share =
-                if s.is_known() { one - (one - s.positive_part()).positive_part() } else { Form::between(0.0, 1.0) };
-            return self.mixed(p, (all.stops[first], all.stops[first + 1]), [share; 3], at, then);
+            return self.mixed(p, (all.stops[first], all.stops[first + 1]), [s.share(); 3], at, then);
         }
         let middle = (first + last).div_ceil(2);
         let beyond = x - Form::constant(middle as f64);

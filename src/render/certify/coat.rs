@@ -199,13 +199,7 @@ impl<'c> Study<'c> {
             }
             PatternNode::Gradient(a, b, axis, size) => {
                 let x = (at.p[*axis as usize].over / at.w) / Form::constant(*size);
-                let one = Form::constant(1.0);
-                let share = if x.is_known() {
-                    one - (one - x.positive_part()).positive_part()
-                } else {
-                    Form::between(0.0, 1.0)
-                };
-                self.mixed(p, (*a, *b), [share; 3], at, then)
+                self.mixed(p, (*a, *b), [x.share(); 3], at, then)
             }
             PatternNode::Mix(a, b, by) => {
                 self.coloured(p, *by, at, &mut |study, q, share| study.mixed(q, (*a, *b), share, at, then))

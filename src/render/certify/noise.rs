@@ -17,9 +17,8 @@ const MOST_CELLS: usize = 4;
 
 /// The pattern's noise at the points `q` of `p`: as [`unit_noise`](crate::math::noise::unit_noise). `None` where nothing is known.
 pub fn unit(p: &Polygon, q: [Form; 3], octaves: u32, seed: u64) -> Option<Form> {
-    let one = Form::constant(1.0);
     let sum = fractal(p, q, octaves, seed)?.times(STRETCH) + Form::constant(0.5);
-    Some(one - (one - sum.positive_part()).positive_part())
+    Some(sum.share())
 }
 
 /// A displacement: as [`vector_noise`](crate::math::noise::vector_noise).
