@@ -73,7 +73,7 @@ pub struct ViewArgs {
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<(u32, u32)>,
-    /// Rays a pixel: `off` for one, `grid:N` for N x N (up to 32), `adaptive:N` for up to N where neighbours differ.
+    /// Rays a pixel: `off` for one, `grid:N` for N x N (up to 32), `adaptive:N` for one and up to N more where neighbours differ.
     #[arg(long, value_name = "off|grid:N|adaptive:N", value_parser = anti_aliasing)]
     pub aa: Option<AntiAliasing>,
     /// Reflections and transmissions one after another, up to 100.
@@ -192,7 +192,7 @@ pub struct GalleryArgs {
     /// Pixels across of every picture; the height keeps the scene's proportion. [default: the scene's own size]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=range::LARGEST_SIDE as i64))]
     pub width: Option<u32>,
-    /// Rays a pixel: `off`, `grid:N` for N x N, `adaptive:N` for up to N where neighbours differ. [default: the scene's own]
+    /// Rays a pixel: `off`, `grid:N` for N x N, `adaptive:N` for one and up to N more where neighbours differ. [default: the scene's own]
     #[arg(long, value_name = "off|grid:N|adaptive:N", value_parser = anti_aliasing)]
     pub aa: Option<AntiAliasing>,
     /// Let the scenes read files in this folder too.

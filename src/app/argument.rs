@@ -37,7 +37,7 @@ pub fn anti_aliasing(s: &str) -> Result<AntiAliasing, String> {
     let (way, n) = s.split_once(':').unwrap_or((s, ""));
     let (is, least, most, make): (_, _, _, fn(u32) -> AntiAliasing) = match way {
         "grid" => ("the grid is", 1, AntiAliasing::LARGEST_GRID, AntiAliasing::Grid),
-        "adaptive" => ("the most rays of a pixel are", 2, AntiAliasing::MOST_RAYS, AntiAliasing::Adaptive),
+        "adaptive" => ("the most further rays of a pixel are", 2, AntiAliasing::MOST_RAYS, AntiAliasing::Adaptive),
         _ => return Err("write `off`, `grid:N` as in `grid:2`, or `adaptive:N` as in `adaptive:16`".into()),
     };
     match n.parse() {

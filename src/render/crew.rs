@@ -1,6 +1,7 @@
 //! Threads that share a piece of work: as many as are useful. This one only waits for them, for its stack is of some other size.
 
 use std::num::NonZero;
+use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, available_parallelism, scope};
 
 /// Stack of a worker: patterns nest up to the language's limit, at a few hundred bytes a level.
@@ -29,6 +30,25 @@ pub fn crew<R: Send>(threads: usize, work: impl Fn() -> R + Sync) -> Vec<R> {
     })
 }
 
+/// Does `work` on each of `pieces`, each by one of so many threads, which take them in order; gives back what the threads were given by
+/// `start` to work with.
+pub fn share_out<P, W: Send>(
+    threads: usize,
+    pieces: impl Iterator<Item = P> + Send,
+    start: impl Fn() -> W + Sync,
+    work: impl Fn(&mut W, P) + Sync,
+) -> Vec<W> {
+    let pieces = Mutex::new(pieces);
+    let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+    crew(threads, || {
+        let mut with = start();
+        while let Some(piece) = next() {
+            work(&mut with, piece);
+        }
+        with
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,6 +63,22 @@ mod tests {
         });
         assert!(ids.len() == 3 && ids[0] != ids[1] && ids[1] != ids[2]);
         assert_eq!(crew(1, || 7), [7]);
+    }
+
+    #[test]
+    fn every_piece_is_worked_on_once() {
+        let mut places = [0; 1000];
+        let done = share_out(
+            3,
+            places.iter_mut().enumerate(),
+            || 0,
+            |count, (i, place)| {
+                *place += i;
+                *count += 1;
+            },
+        );
+        assert_eq!((done.len(), done.iter().sum::<usize>()), (3, 1000));
+        assert!(places.iter().enumerate().all(|(i, place)| i == *place));
     }
 
     #[test]

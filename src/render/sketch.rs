@@ -2,64 +2,76 @@
 //! aren't like their neighbours'. Nothing is promised of it, for what lies between all first rays is never found; but it is what
 //! a short time is best spent on, and every pixel's bits depend on nothing but the pixels around it.
 
-use super::crew::{crew, useful};
+use super::crew::{share_out, useful};
 use super::dispatch;
+use super::lattice::Lattice;
+use super::marks::{ACROSS, BAND, Blocks, Marks, mark};
 use super::options::{Crop, Options, Progress, RayCounts, Rendered, Silent};
-use super::supersampler::{ACROSS, BAND, Patterns, Supersampler};
+use super::supersampler::{Points, Supersampler};
 use super::world::World;
-use crate::film::{Depth, Developer, Film};
+use crate::film::{Film, codes_of_8_bits};
 use crate::scene::AntiAliasing;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
 /// How much is done where.
 #[derive(Clone, Copy, Debug)]
 pub struct Pass {
-    /// Rays of such a pixel.
-    pub rays: u32,
+    /// Points of such a pixel, the middle of it among them.
+    pub lattice: Lattice,
     /// Neighbours of which a channel differs by more codes of 8 bits.
     pub codes: u8,
 }
 
-/// Each pass takes longer than all before it, and about halves what is visible of the error. The better pixels are known, the
-/// smaller the differences that mean something.
-pub const PASSES: [Pass; 4] = [
-    Pass { rays: 4, codes: 8 },
-    Pass { rays: 16, codes: 8 },
-    Pass { rays: 64, codes: 4 },
-    Pass { rays: 256, codes: 3 },
-];
+impl Pass {
+    /// The better pixels are known, the smaller the differences that mean something.
+    fn of(lattice: Lattice) -> Pass {
+        let codes = match lattice.count() {
+            ..50 => 8,
+            50..200 => 4,
+            200.. => 3,
+        };
+        Pass { lattice, codes }
+    }
+
+    /// One after the other, each of which takes longer than all before it. Powers of 5 nest without being worse for that: theirs are
+    /// square lattices, each turned and 5 times as dense as the one before.
+    pub fn all() -> [Pass; 4] {
+        Lattice::nested([5, 25, 125, 625]).map(Pass::of)
+    }
+}
 
 /// A pass goes on while pixels differ from neighbours that got their rays in it, one pixel further each time: where fine patterns
 /// happen to give neighbours the same colour, this finds the whole of such a patch, up to so many pixels from where they differ.
 const ROUNDS: u32 = 8;
 
-/// Makes the picture with up to so many `rays` where neighbours differ; `None` where `cancel` was set meanwhile.
+/// Makes the picture with so many `rays` where neighbours differ, or one more; `None` where `cancel` was set meanwhile.
 pub fn render(
     world: &World,
     options: &Options,
     rays: u32,
     (progress, cancel): (&dyn Progress, &AtomicBool),
 ) -> Option<Rendered> {
-    let before = PASSES.iter().take_while(|p| p.rays < rays).count();
-    let last = Pass { rays, codes: PASSES[before.min(PASSES.len() - 1)].codes };
     // Each round looks one pixel further: with a margin, a part of a picture gets the same bits as the whole.
     let part = options.crop_or_all();
-    let margin = (before as u32 + 1) * ROUNDS;
-    let (x, y) = (part.x.saturating_sub(margin), part.y.saturating_sub(margin));
-    let end = |at: u32, length: u32, most: u32| (at + length).saturating_add(margin).min(most);
+    let (x, y) = (part.x.saturating_sub(ROUNDS), part.y.saturating_sub(ROUNDS));
+    let end = |at: u32, length: u32, most: u32| (at + length).saturating_add(ROUNDS).min(most);
     let right = end(part.x, part.width, options.width);
     let wide = Crop { x, y, width: right - x, height: end(part.y, part.height, options.height) - y };
     let options = Options { crop: Some(wide), ..options.clone() };
     let mut sketch = Sketch::new(world, &options, cancel)?;
-    let is_whole = PASSES[..before].iter().all(|pass| sketch.pass(*pass, (part, &Silent), cancel));
-    if !is_whole || !sketch.pass(last, (part, progress), cancel) {
+    // Of an odd number of points as many lie on each side of the middle.
+    let [lattice] = Lattice::nested([rays | 1]);
+    if !sketch.pass(Pass::of(lattice), (part, progress), cancel) {
         return None;
     }
-    let pixels = rows(&mut sketch.film.pixels, wide, part).concat();
-    let film = Film { width: part.width, height: part.height, pixels };
+    let Sketch { mut film, rays, .. } = sketch;
+    if wide != part {
+        let pixels = rows(&mut film.pixels, wide, part).concat();
+        film = Film { width: part.width, height: part.height, pixels };
+    }
     let threads = useful(options.threads, wide.height.div_ceil(BAND) as usize);
-    Some(Rendered { film, rays: sketch.rays, threads, certificate: None })
+    Some(Rendered { film, rays, threads, certificate: None })
 }
 
 /// A picture without a certificate.
@@ -72,47 +84,59 @@ pub struct Sketch<'w> {
     pub film: Film,
     /// Rays so far.
     pub rays: RayCounts,
-    /// How many rays each pixel has.
-    taken: Vec<u32>,
-    /// Which pixels differ from a neighbour, or did so before.
-    is_edge: Vec<bool>,
+    /// How many points pixels have after so many passes.
+    points: Vec<u32>,
+    /// Of each pixel, how many passes it has had its rays of.
+    levels: Vec<u8>,
+    /// Whether it lacks rays.
+    lacking: Vec<bool>,
+    /// Its codes of 8 bits.
+    codes: Vec<[u8; 3]>,
 }
 
 impl<'w> Sketch<'w> {
     /// One ray through the middle of every pixel; `None` where `cancel` was set meanwhile.
     pub fn new(world: &'w World, options: &'w Options, cancel: &AtomicBool) -> Option<Sketch<'w>> {
         let one = Options { aa: AntiAliasing::Off, accuracy: None, ..options.clone() };
-        let rendered = dispatch::render(world, &one, &Silent, cancel)?;
-        let (taken, is_edge) = (vec![1; rendered.film.pixels.len()], vec![false; rendered.film.pixels.len()]);
-        Some(Sketch { world, options, film: rendered.film, rays: rendered.rays, taken, is_edge })
+        let Rendered { film, rays, .. } = dispatch::render(world, &one, &Silent, cancel)?;
+        let pixels = film.pixels.len();
+        let (levels, lacking, mut codes) = (vec![0; pixels], vec![false; pixels], vec![[0; 3]; pixels]);
+        let (blocks, band) = (Blocks::of(options.crop_or_all()), BAND as usize * film.width.max(1) as usize);
+        let bands = film.pixels.chunks(band).zip(codes.chunks_mut(band));
+        share_out(
+            useful(options.threads, blocks.down),
+            bands,
+            || (),
+            |(), (pixels, codes)| codes_of_8_bits(pixels, codes),
+        );
+        Some(Sketch { world, options, film, rays, points: vec![1], levels, lacking, codes })
     }
 
-    /// More rays where neighbours differ, until no more of them do or [`ROUNDS`] are over; whether it got through. Bands that weren't
+    /// More rays where neighbours differ, until no more of them do or [`ROUNDS`] are over; whether it got through. Blocks that weren't
     /// reached are left as they are. `progress` is told of what is in `part` of the picture.
     pub fn pass(&mut self, pass: Pass, (part, progress): (Crop, &dyn Progress), cancel: &AtomicBool) -> bool {
         let all = self.options.crop_or_all();
-        let (world, options, patterns) = (self.world, self.options, Patterns::new(pass.rays));
+        let (world, options, points) = (self.world, self.options, Points::of(pass.lattice, &self.points));
         // Workers' memory is made once.
         let idle = Mutex::new(Vec::new());
         let worker = || {
             let known = idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-            known.unwrap_or_else(|| Supersampler::new(dispatch::sampler(world, options, cancel), &patterns, all))
+            known.unwrap_or_else(|| Supersampler::new(dispatch::sampler(world, options, cancel), &points, all))
         };
-        let mut changed = vec![true; all.height.div_ceil(BAND) as usize];
-        for round in 0..ROUNDS {
-            let marked = self.mark(pass.codes, &changed);
-            // Those that were marked before this pass lack rays, too.
-            let wanted = if round == 0 { changed } else { marked };
+        let blocks = Blocks::of(all);
+        let mut wanted = vec![true; blocks.count()];
+        for _ in 0..ROUNDS {
+            wanted = self.mark(pass, blocks.around(&wanted));
             if !wanted.contains(&true) || cancel.load(Relaxed) {
                 break;
             }
-            let workers;
-            (changed, workers) = self.round(&wanted, &worker, cancel);
+            let workers = self.round(&wanted, &worker, cancel);
             idle.lock().unwrap_or_else(PoisonError::into_inner).extend(workers);
         }
         for worker in idle.into_inner().unwrap_or_else(PoisonError::into_inner) {
             self.rays = self.rays.plus(worker.counts());
         }
+        self.points.push(pass.lattice.count());
         let is_whole = !cancel.load(Relaxed);
         if is_whole {
             progress.finished(part, &rows(&mut self.film.pixels, all, part));
@@ -120,101 +144,52 @@ impl<'w> Sketch<'w> {
         is_whole
     }
 
-    /// The rays that pixels of some bands lack which are marked; which bands that changes, and those who did it.
+    /// Marks pixels that lack rays, in blocks that are `wanted`; those are left in which there are any.
+    fn mark(&mut self, pass: Pass, mut wanted: Vec<bool>) -> Vec<bool> {
+        let (width, blocks) = (self.film.width.max(1) as usize, Blocks::of(self.options.crop_or_all()));
+        let bands = marks(&mut self.levels, &mut self.lacking, width).zip(wanted.chunks_mut(blocks.across.max(1)));
+        let bands = (0..).step_by(BAND as usize).zip(bands);
+        let (codes, limits) = (&self.codes, (pass.codes, self.points.len() as u8));
+        share_out(
+            useful(self.options.threads, blocks.down),
+            bands,
+            || (),
+            |(), (y, (mut marks, wanted))| {
+                mark((codes, width, y), limits, &mut marks, wanted);
+            },
+        );
+        wanted
+    }
+
+    /// The rays that pixels of some blocks lack; and those who traced them.
     fn round<'p>(
         &mut self,
         wanted: &[bool],
         worker: &(dyn Fn() -> Supersampler<'p, 'p> + Sync),
         cancel: &AtomicBool,
-    ) -> (Vec<bool>, Vec<Supersampler<'p, 'p>>) {
-        let (all, threads) = (self.options.crop_or_all(), self.threads(wanted));
-        let band = all.width.max(1) as usize * BAND as usize;
-        let bands = self.film.pixels.chunks_mut(band).zip(self.taken.chunks_mut(band)).zip(self.is_edge.chunks(band));
-        let bands: Vec<_> = (all.y..).step_by(BAND as usize).zip(bands).map(Mutex::new).collect();
-        let changed: Vec<AtomicBool> = bands.iter().map(|_| AtomicBool::new(false)).collect();
-        let next = AtomicUsize::new(0);
-        let workers = crew(threads, || {
-            let mut worker = worker();
-            while let number = next.fetch_add(1, Relaxed)
-                && let Some(band) = bands.get(number)
-                && !cancel.load(Relaxed)
-            {
-                if !wanted[number] {
-                    continue;
-                }
-                // Locked once, by the thread whose turn it is.
-                let mut band = band.lock().unwrap_or_else(PoisonError::into_inner);
-                let (y, ((pixels, taken), is_edge)) = &mut *band;
-                for x in (0..all.width).step_by(ACROSS as usize) {
-                    worker.find_edges(x, taken, is_edge);
-                    if !worker.is_idle() {
-                        changed[number].store(true, Relaxed);
-                        worker.trace(*y, (pixels, taken), cancel);
-                    }
-                }
-            }
-            worker
-        });
-        (changed.into_iter().map(AtomicBool::into_inner).collect(), workers)
-    }
-
-    /// Threads that are of use for so many bands.
-    fn threads(&self, bands: &[bool]) -> usize {
-        useful(self.options.threads, bands.iter().filter(|b| **b).count())
-    }
-
-    /// Marks pixels that differ from a neighbour beside or above or below them, where that may be since bands have changed; those that
-    /// are marked stay so. In which bands any is that wasn't.
-    fn mark(&mut self, codes: u8, changed: &[bool]) -> Vec<bool> {
-        let concerned = |i: usize| changed[i.saturating_sub(1)..(i + 2).min(changed.len())].contains(&true);
-        let concerned: Vec<bool> = (0..changed.len()).map(concerned).collect();
-        let threads = self.threads(&concerned);
+    ) -> Vec<Supersampler<'p, 'p>> {
+        let all = self.options.crop_or_all();
         let width = self.film.width.max(1) as usize;
-        let (pixels, rows) = (&self.film.pixels, self.film.pixels.len() / width);
-        let bands: Vec<_> = self.is_edge.chunks_mut(width * BAND as usize).enumerate().map(Mutex::new).collect();
-        let marked: Vec<AtomicBool> = bands.iter().map(|_| AtomicBool::new(false)).collect();
-        let next = AtomicUsize::new(0);
-        crew(threads, || {
-            let (mut shown, mut differ) = (Vec::new(), vec![0; 3 * width]);
-            while let Some(band) = bands.get(next.fetch_add(1, Relaxed)) {
-                let mut band = band.lock().unwrap_or_else(PoisonError::into_inner);
-                let (number, is_edge) = &mut *band;
-                if !concerned[*number] {
-                    continue;
+        let marks = marks(&mut self.levels, &mut self.lacking, width);
+        let bands =
+            self.film.pixels.chunks_mut(BAND as usize * width).zip(self.codes.chunks_mut(BAND as usize * width));
+        let wanted = wanted.chunks(Blocks::of(all).across.max(1));
+        let useful = useful(self.options.threads, wanted.clone().filter(|blocks| blocks.contains(&true)).count());
+        let bands = (all.y..).step_by(BAND as usize).zip(wanted).zip(bands.zip(marks));
+        share_out(useful, bands, worker, |worker, ((y, wanted), ((pixels, codes), mut marks))| {
+            for (x, _) in (0..).step_by(ACROSS as usize).zip(wanted).filter(|(_, wanted)| **wanted) {
+                if !cancel.load(Relaxed) {
+                    worker.block([x, y], (pixels, &mut marks, codes), cancel);
                 }
-                let mut any = false;
-                // With the row above and the row below.
-                let first = *number * BAND as usize;
-                let (from, to) = (first.saturating_sub(1), (first + BAND as usize + 1).min(rows));
-                shown.clear();
-                Developer::of(Depth::Eight).develop(&pixels[from * width..to * width], &mut shown);
-                let row = |y: usize| shown.get(3 * width * y..3 * width * (y + 1));
-                for (y, is_edge) in (first - from..).zip(is_edge.chunks_mut(width)) {
-                    let Some(here) = row(y) else { continue };
-                    differ.fill(0);
-                    note_differences(&here[3..], here, codes, &mut differ[3..]);
-                    note_differences(here, &here[3..], codes, &mut differ);
-                    for other in [y.checked_sub(1).and_then(row), row(y + 1)].into_iter().flatten() {
-                        note_differences(here, other, codes, &mut differ);
-                    }
-                    for (is_edge, differ) in is_edge.iter_mut().zip(differ.chunks_exact(3)) {
-                        let differs = differ.iter().any(|d| *d != 0);
-                        any |= differs & !*is_edge;
-                        *is_edge |= differs;
-                    }
-                }
-                marked[*number].store(any, Relaxed);
             }
-        });
-        marked.into_iter().map(AtomicBool::into_inner).collect()
+        })
     }
 }
 
-/// Notes which of `a` differ by more than `most` from those of `b` in the same place, as far as the shorter of them goes.
-fn note_differences(a: &[u8], b: &[u8], most: u8, differ: &mut [u8]) {
-    for ((a, b), differ) in a.iter().zip(b).zip(differ) {
-        *differ |= (a.abs_diff(*b) > most) as u8;
-    }
+/// The marks of each band.
+fn marks<'m>(levels: &'m mut [u8], lacking: &'m mut [bool], width: usize) -> impl Iterator<Item = Marks<'m>> {
+    let bands = levels.chunks_mut(BAND as usize * width).zip(lacking.chunks_mut(BAND as usize * width));
+    bands.map(|(levels, lacking)| Marks { levels, lacking })
 }
 
 /// Of the pixels of `all`, the rows of `part` of it.
@@ -251,9 +226,9 @@ mod tests {
         let mut rays = sketch.rays.camera;
         assert_eq!(rays, 96 * 54);
         let part = options.crop_or_all();
-        for Pass { rays: n, codes } in PASSES {
-            assert!(sketch.pass(Pass { rays: n, codes }, (part, &Silent), &NEVER));
-            let now = off(&sketch);
+        for pass in Pass::all() {
+            assert!(sketch.pass(pass, (part, &Silent), &NEVER));
+            let (n, now) = (pass.lattice.count(), off(&sketch));
             assert!(now < 0.7 * before, "{n} rays: {before} to {now}");
             assert!(
                 sketch.rays.camera > rays && sketch.rays.camera < rays + 96 * 54 * n as u64,
@@ -264,13 +239,14 @@ mod tests {
         // On several threads the same.
         let several = Options { threads: Some(3), ..options.clone() };
         let mut other = Sketch::new(&world, &several, &NEVER).unwrap();
-        for pass in PASSES {
+        for pass in Pass::all() {
             other.pass(pass, (part, &Silent), &NEVER);
         }
         assert!(other.film == sketch.film);
         // And nothing is done to a row that isn't reached.
         let cancelled = AtomicBool::new(true);
-        assert!(!other.pass(Pass { rays: 1024, codes: 0 }, (part, &Silent), &cancelled) && other.film == sketch.film);
+        let [all] = Lattice::nested([960]).map(|lattice| Pass { lattice, codes: 0 });
+        assert!(!other.pass(all, (part, &Silent), &cancelled) && other.film == sketch.film);
     }
 
     #[test]

@@ -1,77 +1,57 @@
 //! The further rays of pixels that differ from their neighbours: which points they go through, and how they are traced together.
 
 use super::certify::Sampler;
+use super::lattice::Lattice;
+use super::marks::{ACROSS, Marks};
 use super::options::{Crop, RayCounts};
-use super::sobol;
+use super::tile::Mean;
+use crate::film::codes_of_8_bits;
 use crate::math::hash::KeyedHash;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-
-/// Rays are traced together by rectangles of so many pixels by so many: as many as a batch holds, were each to get one.
-pub const ACROSS: u32 = 32;
-/// See [`ACROSS`].
-pub const BAND: u32 = 8;
 
 /// Tag of what the random numbers are for.
 const SKETCH: u64 = 3;
 
-/// So many sets of points within a pixel are taken in turn by chance: neighbours rarely have the same, and making one for each
-/// would cost as much as its rays.
-const PATTERNS: u64 = 61;
-
-/// Points within a pixel, to be taken by lot.
-pub struct Patterns {
-    rays: u32,
-    points: Vec<[f64; 2]>,
+/// Points within a pixel, from its middle.
+pub struct Points {
+    lattice: Lattice,
+    /// How many a pixel had before, after so many passes: as many as a lattice has that this one holds.
+    before: Vec<u32>,
+    /// Turned over in every way: neighbours rarely share one, so that patterns are seen by chance, not by beats.
+    ways: [Vec<[f64; 2]>; 4],
 }
 
-impl Patterns {
-    /// Of so many points each.
-    pub fn new(rays: u32) -> Patterns {
-        let of = |number| (0..rays).map(move |i| sobol::point(i, KeyedHash::new().with(SKETCH).with(number)));
-        Patterns { rays, points: (0..PATTERNS).flat_map(of).collect() }
+impl Points {
+    /// Those of a lattice, where pixels have had as many as this `before`, by number of passes.
+    pub fn of(lattice: Lattice, before: &[u32]) -> Points {
+        Points { lattice, before: before.to_vec(), ways: [0, 1, 2, 3].map(|way| lattice.points(way).collect()) }
     }
 
-    /// Those of pixel (x, y).
-    fn of(&self, x: u32, y: u32) -> &[[f64; 2]] {
-        let key = KeyedHash::new().with(SKETCH).with(x as u64).with(y as u64);
-        &self.points[(key.bits() % PATTERNS) as usize * self.rays as usize..][..self.rays as usize]
+    /// As many as pixel (x, y) lacks that has `had` some.
+    fn lacked(&self, x: u32, y: u32, had: u32) -> impl Iterator<Item = &[f64; 2]> {
+        let way = KeyedHash::new().with(SKETCH).with(x as u64).with(y as u64).bits() % 4;
+        let step = self.lattice.count() / had;
+        self.ways[way as usize].chunks(step as usize).flat_map(|points| &points[1..])
     }
 }
 
 /// One thread's work on a pass.
 pub struct Supersampler<'p, 'w> {
     sampler: Box<dyn Sampler + Send + 'w>,
-    patterns: &'p Patterns,
+    points: &'p Points,
     part: Crop,
-    /// Pixels of the rectangle at hand: their place in the band, by column and row.
-    edges: Vec<[u32; 2]>,
-    points: Vec<[f64; 2]>,
-    /// Of each point, which of those pixels it belongs to.
-    whose: Vec<u32>,
-    sums: Vec<[f64; 3]>,
+    /// Pixels of the block at hand: their place in the band, by column and row.
+    pixels: Vec<[u32; 2]>,
+    /// Points of the picture: of each pixel those that it lacks, one pixel after the other.
+    at: Vec<[f64; 2]>,
+    lights: Vec<[f64; 3]>,
 }
 
 impl<'p, 'w> Supersampler<'p, 'w> {
     /// For a part of a picture.
-    pub fn new(sampler: Box<dyn Sampler + Send + 'w>, patterns: &'p Patterns, part: Crop) -> Supersampler<'p, 'w> {
-        let (edges, points, whose, sums) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Supersampler { sampler, patterns, part, edges, points, whose, sums }
-    }
-
-    /// Finds which pixels of a band, from column x on, want rays.
-    pub fn find_edges(&mut self, x: u32, taken: &[u32], is_edge: &[bool]) {
-        let width = self.part.width as usize;
-        self.edges.clear();
-        for (row, (taken, is_edge)) in (0..).zip(taken.chunks(width).zip(is_edge.chunks(width))) {
-            let columns = x..(x + ACROSS).min(self.part.width);
-            let wanted = |x: &u32| is_edge[*x as usize] && taken[*x as usize] < self.patterns.rays;
-            self.edges.extend(columns.filter(wanted).map(|x| [x, row]));
-        }
-    }
-
-    /// Whether there are none.
-    pub fn is_idle(&self) -> bool {
-        self.edges.is_empty()
+    pub fn new(sampler: Box<dyn Sampler + Send + 'w>, points: &'p Points, part: Crop) -> Supersampler<'p, 'w> {
+        let (pixels, at, lights) = (Vec::new(), Vec::new(), Vec::new());
+        Supersampler { sampler, points, part, pixels, at, lights }
     }
 
     /// Rays so far.
@@ -79,34 +59,50 @@ impl<'p, 'w> Supersampler<'p, 'w> {
         self.sampler.counts()
     }
 
-    /// Traces the rays that those pixels lack, of which there is one at least.
-    pub fn trace(&mut self, y: u32, (pixels, taken): (&mut [[f32; 3]], &mut [u32]), cancel: &AtomicBool) {
-        let (part, rays) = (self.part, self.patterns.rays);
-        let [first, last] = ends(&self.edges);
-        let place = |[x, row]: [u32; 2]| (row * part.width + x) as usize;
-        self.points.clear();
-        self.whose.clear();
-        self.sums.clear();
-        for (i, &at) in (0..).zip(&self.edges) {
-            let (x, y) = (part.x + at[0], y + at[1]);
-            // The ray through the middle isn't one of the points, the others are the first of them.
-            let had = Some(taken[place(at)]).filter(|n| *n > 1).unwrap_or(0);
-            let points = &self.patterns.of(x, y)[had as usize..];
-            self.points.extend(points.iter().map(|[u, v]| [x as f64 + u, y as f64 + v]));
-            self.whose.resize(self.points.len(), i);
-            self.sums.push(pixels[place(at)].map(|mean| had as f64 * mean as f64));
+    /// Traces the rays that pixels lack in the block of a band that begins at column x. The band begins at row y of the picture.
+    pub fn block(
+        &mut self,
+        [x, y]: [u32; 2],
+        (pixels, marks, codes): (&mut [[f32; 3]], &mut Marks<'_>, &mut [[u8; 3]]),
+        cancel: &AtomicBool,
+    ) {
+        let (part, count, before) = (self.part, self.points.lattice.count(), &self.points.before);
+        let columns = x..(x + ACROSS).min(part.width);
+        self.pixels.clear();
+        for (row, lacking) in (0..).zip(marks.lacking.chunks(part.width as usize)) {
+            let lacking = columns.clone().filter(|x| lacking[*x as usize]);
+            self.pixels.extend(lacking.map(|x| [x, row]));
         }
+        if self.pixels.is_empty() {
+            return;
+        }
+        let place = |[x, row]: [u32; 2]| (row * part.width + x) as usize;
+        self.at.clear();
+        for &pixel in &self.pixels {
+            let [x, y] = [part.x + pixel[0], y + pixel[1]];
+            let lacked = self.points.lacked(x, y, before[marks.levels[place(pixel)] as usize]);
+            self.at.extend(lacked.map(|[right, down]| [x as f64 + 0.5 + right, y as f64 + 0.5 + down]));
+        }
+        let [first, last] = ends(&self.pixels);
         let rect = [part.x + first[0], y + first[1], part.x + last[0] + 1, y + last[1] + 1].map(f64::from);
-        let (sums, whose) = (&mut self.sums, &self.whose);
-        self.sampler.trace(rect, &self.points, &mut |i, light| {
-            let sum = &mut sums[whose[i] as usize];
-            (0..3).for_each(|c| sum[c] += light[c]);
-        });
+        let lights = &mut self.lights;
+        lights.clear();
+        self.sampler.trace(rect, &self.at, &mut |_, light| lights.push(light));
         if cancel.load(Relaxed) {
             return;
         }
-        for (at, sum) in self.edges.iter().map(|at| place(*at)).zip(&self.sums) {
-            (pixels[at], taken[at]) = (sum.map(|s| (s / rays as f64) as f32), rays);
+        let mean = Mean::of(count);
+        let mut lights = lights.iter();
+        for at in self.pixels.iter().map(|pixel| place(*pixel)) {
+            let had = before[marks.levels[at] as usize];
+            let sum = pixels[at].map(|mean| had as f64 * mean as f64);
+            let sum = lights
+                .by_ref()
+                .take((count - had) as usize)
+                .fold(sum, |sum, light| [0, 1, 2].map(|c| sum[c] + light[c]));
+            pixels[at] = sum.map(|s| mean.resolve(s));
+            codes_of_8_bits(&pixels[at..=at], &mut codes[at..=at]);
+            (marks.levels[at], marks.lacking[at]) = (before.len() as u8, false);
         }
     }
 }

@@ -161,21 +161,22 @@ impl<'w, L: Lane> TileWorker<'w, L> {
 }
 
 /// Takes the mean of a pixel's rays.
-struct Mean {
+pub struct Mean {
     samples: f64,
     /// Its reciprocal, where that is exact: it gives the same bits as the quotient, and sooner.
     reciprocal: Option<f64>,
 }
 
 impl Mean {
-    fn of(samples: u32) -> Mean {
+    /// Of so many.
+    pub fn of(samples: u32) -> Mean {
         let count = samples as f64;
         Mean { samples: count, reciprocal: samples.is_power_of_two().then_some(1.0 / count) }
     }
 
     /// The mean, as it is stored. Brighter than `f32` can hold becomes the brightest that it can.
     #[inline(always)]
-    fn resolve(&self, sum: f64) -> f32 {
+    pub fn resolve(&self, sum: f64) -> f32 {
         let mean = match self.reciprocal {
             Some(factor) => sum * factor,
             None => sum / self.samples,

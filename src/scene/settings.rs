@@ -24,7 +24,7 @@ pub enum AntiAliasing {
     Off,
     /// A regular n × n grid of rays, whose colours are averaged.
     Grid(u32),
-    /// One ray through the middle of each pixel, and up to so many where neighbours differ.
+    /// One ray through the middle of each pixel, and up to so many more where neighbours differ.
     Adaptive(u32),
 }
 
@@ -32,7 +32,7 @@ impl AntiAliasing {
     /// Largest n of a grid: 1,024 rays a pixel.
     pub const LARGEST_GRID: u32 = 32;
 
-    /// Most rays of a pixel that differs from its neighbours: those of the largest grid.
+    /// Most further rays of a pixel that differs from its neighbours: those of the largest grid.
     pub const MOST_RAYS: u32 = Self::LARGEST_GRID * Self::LARGEST_GRID;
 
     /// Rays along one side of a pixel, of those that every pixel gets.

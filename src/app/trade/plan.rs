@@ -8,7 +8,7 @@ use crate::scene::{Precision, Settings};
 const ERRORS: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
 /// Rays along a side of a pixel.
 const GRIDS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
-/// The most rays of a pixel that differs from its neighbours.
+/// The most further rays of a pixel that differs from its neighbours.
 const ADAPTIVE: [u32; 5] = [4, 16, 64, 256, 1024];
 /// Seconds. The shortest serves small pictures, the longest is left out where the budget is smaller.
 const TIMES: [f64; 8] = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0];

@@ -64,7 +64,7 @@ pub const WORDS: &[Word] = &[
                 "aa",
                 Ty::AntiAliasing,
                 Default::Absent,
-                "`off`: one ray a pixel; `grid(n)`: n × n rays, averaged; `adaptive(n)`: up to n rays where neighbours differ",
+                "`off`: one ray a pixel; `grid(n)`: n × n rays, averaged; `adaptive(n)`: one, and up to n more where neighbours differ",
             ),
             optional("depth", Ty::Whole, Default::Number(8.0), "how many mirrors and glasses a ray may go through; glass sends two rays on from each surface, so each level may double the time")
                 .within(0.0, Settings::LARGEST_DEPTH as f64),
@@ -100,9 +100,9 @@ pub const WORDS: &[Word] = &[
         name: "adaptive",
         kind: Kind::Setting,
         params: &[
-            required("n", Ty::Whole, "most rays of a pixel").within(2.0, AntiAliasing::MOST_RAYS as f64)
+            required("n", Ty::Whole, "most further rays of a pixel").within(2.0, AntiAliasing::MOST_RAYS as f64)
         ],
-        doc: "Anti-aliasing where it is seen: one ray a pixel, and up to n where neighbours differ. Much quicker than a grid for as smooth a picture; what lies between all first rays is missed.",
+        doc: "Anti-aliasing where it is seen: one ray a pixel, and up to n more where neighbours differ, on a lattice. Much quicker than a grid for as smooth a picture; what lies between all first rays is missed.",
         example: "sphere()\nlight(at: [4, 8, 6])\nrender(aa: adaptive(16))",
         run: Run::Call(|_, a| Ok(Value::AntiAliasing(AntiAliasing::Adaptive(a.number(0) as u32)))),
     },

@@ -2,7 +2,7 @@
 //! short. What a round has brought to its error stays, whatever becomes of the next.
 
 use super::super::options::{Options, Progress, RayCounts, Rendered, Silent};
-use super::super::sketch::{PASSES, Sketch};
+use super::super::sketch::{Pass, Sketch};
 use super::super::world::World;
 use super::picture::threads;
 use super::{Control, Pixel, Refined, Status, Summary, Target, refine};
@@ -67,7 +67,7 @@ fn until<'w>(
     let mut sketch = Sketch::new(world, options, cancel)?;
     let part = options.crop_or_all();
     let is_whole =
-        watched(deadline, cancel, |over| PASSES.iter().all(|pass| sketch.pass(*pass, (part, &Silent), over)));
+        watched(deadline, cancel, |over| Pass::all().into_iter().all(|pass| sketch.pass(pass, (part, &Silent), over)));
     if !is_whole {
         return Some(Picture::sketched(sketch, accuracy));
     }
