@@ -113,13 +113,6 @@ impl Developer {
     }
 }
 
-/// The codes of 8 bits of as many pixels as there are places for.
-pub fn codes_of_8_bits(pixels: &[[f32; 3]], codes: &mut [[u8; 3]]) {
-    if let Table::Eight(table) = &Developer::of(Depth::Eight).0 {
-        codes.iter_mut().zip(pixels).for_each(|(codes, pixel)| *codes = pixel.map(|v| code_8(table, v)));
-    }
-}
-
 fn fill<const N: usize>(pixels: &[[f32; 3]], out: &mut Vec<u8>, code: impl Fn(f32) -> [u8; N]) {
     let before = out.len();
     out.resize(before + N * 3 * pixels.len(), 0);

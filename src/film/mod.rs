@@ -11,7 +11,7 @@ pub mod recipe;
 pub mod write;
 
 pub use buffer::{Digest, Film};
-pub use develop::{Depth, Developer, codes_of_8_bits};
+pub use develop::{Depth, Developer};
 pub use format::{Format, encode};
 pub use png::{Compression, PngWriter};
 pub use read::{Picture, ReadError, read};

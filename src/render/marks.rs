@@ -36,6 +36,11 @@ impl Blocks {
         self.across * self.down
     }
 
+    /// How many bands hold some of these blocks.
+    pub fn bands(self, some: &[bool]) -> usize {
+        some.chunks(self.across.max(1)).filter(|band| band.contains(&true)).count()
+    }
+
     /// `some` blocks, and those that share a side with them.
     pub fn around(self, some: &[bool]) -> Vec<bool> {
         let mut around = some.to_vec();
@@ -56,6 +61,12 @@ impl Blocks {
         }
         around
     }
+}
+
+/// About the codes of 8 bits of as many pixels as there are places for. The root is close to the curve of sRGB, and lanes have it.
+pub fn encode(pixels: &[[f32; 3]], codes: &mut [[u8; 3]]) {
+    let codes = codes.as_flattened_mut().iter_mut();
+    codes.zip(pixels.as_flattened()).for_each(|(code, v)| *code = (255.0 * v.clamp(0.0, 1.0).sqrt()) as u8);
 }
 
 /// Marks those pixels of a band as lacking rays that have had fewer than `level` passes, and either some, or differ by more than `most`
@@ -111,6 +122,7 @@ fn note_differences(a: &[u8], b: &[u8], differ: &mut [u8]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::color::encode_srgb;
 
     #[test]
     fn pixels_are_marked_on_both_sides_of_what_differs() {
@@ -137,6 +149,19 @@ mod tests {
             marks.levels[3] = 1;
             mark((&codes, 70, 0), (9, 2), &mut marks, &mut [true; 3]);
             assert!(marks.lacking.iter().enumerate().all(|(i, lacks)| *lacks == (i == 3)));
+        }
+    }
+
+    #[test]
+    fn codes_are_near_those_of_files() {
+        let mut codes = [[0; 3]];
+        for v in 0..=1000 {
+            encode(&[[v as f32 / 1000.0, -1.0, 2.0]], &mut codes);
+            let true_code = (255.0 * encode_srgb(v as f64 / 1000.0)).round();
+            assert!(
+                (codes[0][0] as f64 - true_code).abs() <= 9.0 && codes[0][1..] == [0, 255],
+                "{v}: {codes:?}, {true_code}"
+            );
         }
     }
 

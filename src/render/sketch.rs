@@ -5,11 +5,11 @@
 use super::crew::{share_out, useful};
 use super::dispatch;
 use super::lattice::Lattice;
-use super::marks::{ACROSS, BAND, Blocks, Marks, mark};
+use super::marks::{ACROSS, BAND, Blocks, Marks, encode, mark};
 use super::options::{Crop, Options, Progress, RayCounts, Rendered, Silent};
 use super::supersampler::{Points, Supersampler};
 use super::world::World;
-use crate::film::{Film, codes_of_8_bits};
+use crate::film::Film;
 use crate::scene::AntiAliasing;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -90,7 +90,7 @@ pub struct Sketch<'w> {
     levels: Vec<u8>,
     /// Whether it lacks rays.
     lacking: Vec<bool>,
-    /// Its codes of 8 bits.
+    /// Its colour, as [`encode`] makes it.
     codes: Vec<[u8; 3]>,
 }
 
@@ -103,12 +103,7 @@ impl<'w> Sketch<'w> {
         let (levels, lacking, mut codes) = (vec![0; pixels], vec![false; pixels], vec![[0; 3]; pixels]);
         let (blocks, band) = (Blocks::of(options.crop_or_all()), BAND as usize * film.width.max(1) as usize);
         let bands = film.pixels.chunks(band).zip(codes.chunks_mut(band));
-        share_out(
-            useful(options.threads, blocks.down),
-            bands,
-            || (),
-            |(), (pixels, codes)| codes_of_8_bits(pixels, codes),
-        );
+        share_out(useful(options.threads, blocks.down), bands, || (), |(), (pixels, codes)| encode(pixels, codes));
         Some(Sketch { world, options, film, rays, points: vec![1], levels, lacking, codes })
     }
 
@@ -147,11 +142,12 @@ impl<'w> Sketch<'w> {
     /// Marks pixels that lack rays, in blocks that are `wanted`; those are left in which there are any.
     fn mark(&mut self, pass: Pass, mut wanted: Vec<bool>) -> Vec<bool> {
         let (width, blocks) = (self.film.width.max(1) as usize, Blocks::of(self.options.crop_or_all()));
+        let threads = useful(self.options.threads, blocks.bands(&wanted));
         let bands = marks(&mut self.levels, &mut self.lacking, width).zip(wanted.chunks_mut(blocks.across.max(1)));
         let bands = (0..).step_by(BAND as usize).zip(bands);
         let (codes, limits) = (&self.codes, (pass.codes, self.points.len() as u8));
         share_out(
-            useful(self.options.threads, blocks.down),
+            threads,
             bands,
             || (),
             |(), (y, (mut marks, wanted))| {
@@ -173,10 +169,11 @@ impl<'w> Sketch<'w> {
         let marks = marks(&mut self.levels, &mut self.lacking, width);
         let bands =
             self.film.pixels.chunks_mut(BAND as usize * width).zip(self.codes.chunks_mut(BAND as usize * width));
-        let wanted = wanted.chunks(Blocks::of(all).across.max(1));
-        let useful = useful(self.options.threads, wanted.clone().filter(|blocks| blocks.contains(&true)).count());
+        let blocks = Blocks::of(all);
+        let threads = useful(self.options.threads, blocks.bands(wanted));
+        let wanted = wanted.chunks(blocks.across.max(1));
         let bands = (all.y..).step_by(BAND as usize).zip(wanted).zip(bands.zip(marks));
-        share_out(useful, bands, worker, |worker, ((y, wanted), ((pixels, codes), mut marks))| {
+        share_out(threads, bands, worker, |worker, ((y, wanted), ((pixels, codes), mut marks))| {
             for (x, _) in (0..).step_by(ACROSS as usize).zip(wanted).filter(|(_, wanted)| **wanted) {
                 if !cancel.load(Relaxed) {
                     worker.block([x, y], (pixels, &mut marks, codes), cancel);

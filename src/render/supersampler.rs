@@ -2,10 +2,9 @@
 
 use super::certify::Sampler;
 use super::lattice::Lattice;
-use super::marks::{ACROSS, Marks};
+use super::marks::{ACROSS, Marks, encode};
 use super::options::{Crop, RayCounts};
 use super::tile::Mean;
-use crate::film::codes_of_8_bits;
 use crate::math::hash::KeyedHash;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -101,7 +100,7 @@ impl<'p, 'w> Supersampler<'p, 'w> {
                 .take((count - had) as usize)
                 .fold(sum, |sum, light| [0, 1, 2].map(|c| sum[c] + light[c]));
             pixels[at] = sum.map(|s| mean.resolve(s));
-            codes_of_8_bits(&pixels[at..=at], &mut codes[at..=at]);
+            encode(&pixels[at..=at], &mut codes[at..=at]);
             (marks.levels[at], marks.lacking[at]) = (before.len() as u8, false);
         }
     }
