@@ -91,7 +91,7 @@ impl<'w> Sketch<'w> {
     /// reached are left as they are. `progress` is told of what is in `part` of the picture.
     pub fn pass(&mut self, pass: Pass, (part, progress): (Crop, &dyn Progress), cancel: &AtomicBool) -> bool {
         let all = self.options.crop_or_all();
-        let (world, options, patterns) = (self.world, self.options, Patterns::new(pass.rays));
+        let (world, options, patterns) = (self.world, self.options, Patterns::new(pass.rays, self.options.filter));
         // Workers' memory is made once.
         let idle = Mutex::new(Vec::new());
         let worker = || {

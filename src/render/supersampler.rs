@@ -1,9 +1,11 @@
 //! The further rays of pixels that differ from their neighbours: which points they go through, and how they are traced together.
 
 use super::certify::Sampler;
+use super::filter::Kernel;
 use super::options::{Crop, RayCounts};
 use super::sobol;
 use crate::math::hash::KeyedHash;
+use crate::scene::PixelFilter;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Rays are traced together by rectangles of so many pixels by so many: as many as a batch holds, were each to get one.
@@ -18,21 +20,52 @@ const SKETCH: u64 = 3;
 /// would cost as much as its rays.
 const PATTERNS: u64 = 61;
 
-/// Points within a pixel, to be taken by lot.
+/// Points that stand for a pixel, to be taken by lot.
 pub struct Patterns {
     rays: u32,
-    points: Vec<[f64; 2]>,
+    points: Vec<Point>,
+    /// By how much they may lie outside of their pixel.
+    beyond: f64,
 }
 
+/// A point, from the pixel's upper left corner, and whether it counts against the light: 1 or −1. There are as many of them as the
+/// filter has weight.
+#[derive(Clone, Copy)]
+struct Point {
+    at: [f64; 2],
+    sign: f64,
+}
+
+/// Among the first 2, 3, 4 and more up to so many points of a set, at most a quarter is negative: else what is left of them would be
+/// too little to divide by. Later there are about as many as there should be.
+const BALANCED: u32 = 64;
+
 impl Patterns {
-    /// Of so many points each.
-    pub fn new(rays: u32) -> Patterns {
-        let of = |number| (0..rays).map(move |i| sobol::point(i, KeyedHash::new().with(SKETCH).with(number)));
-        Patterns { rays, points: (0..PATTERNS).flat_map(of).collect() }
+    /// Of so many points each, for a filter.
+    pub fn new(rays: u32, filter: PixelFilter) -> Patterns {
+        let kernel = Kernel::of(filter);
+        let point = |i: u32, key: KeyedHash| {
+            let at = sobol::point(i, key);
+            let Some(k) = &kernel else { return Point { at, sign: 1.0 } };
+            let [u, v] = at.map(|t| k.quantile(t, [-k.radius(), k.radius()]));
+            Point { at: [0.5 + u, 0.5 + v], sign: k.sign(u) * k.sign(v) }
+        };
+        let is_balanced = |key: &KeyedHash| {
+            let mut negative = 0;
+            (0..BALANCED).all(|i| {
+                negative += (point(i, *key).sign < 0.0) as u32;
+                4 * negative <= i + 1
+            })
+        };
+        let keys = (0..).map(|number| KeyedHash::new().with(SKETCH).with(number));
+        let has_negative = kernel.as_ref().is_some_and(Kernel::has_negative);
+        let keys = keys.filter(|key| !has_negative || is_balanced(key)).take(PATTERNS as usize);
+        let points = keys.flat_map(|key| (0..rays).map(move |i| (i, key))).map(|(i, key)| point(i, key)).collect();
+        Patterns { rays, points, beyond: kernel.map_or(0.0, |k| k.radius() - 0.5) }
     }
 
     /// Those of pixel (x, y).
-    fn of(&self, x: u32, y: u32) -> &[[f64; 2]] {
+    fn of(&self, x: u32, y: u32) -> &[Point] {
         let key = KeyedHash::new().with(SKETCH).with(x as u64).with(y as u64);
         &self.points[(key.bits() % PATTERNS) as usize * self.rays as usize..][..self.rays as usize]
     }
@@ -46,9 +79,10 @@ pub struct Supersampler<'p, 'w> {
     /// Pixels of the rectangle at hand: their place in the band, by column and row.
     edges: Vec<[u32; 2]>,
     points: Vec<[f64; 2]>,
-    /// Of each point, which of those pixels it belongs to.
-    whose: Vec<u32>,
-    sums: Vec<[f64; 3]>,
+    /// Of each point, which of those pixels it belongs to, and its sign.
+    whose: Vec<(u32, f64)>,
+    /// Of each of those pixels, light and signs.
+    sums: Vec<([f64; 3], f64)>,
 }
 
 impl<'p, 'w> Supersampler<'p, 'w> {
@@ -91,22 +125,28 @@ impl<'p, 'w> Supersampler<'p, 'w> {
             let (x, y) = (part.x + at[0], y + at[1]);
             // The ray through the middle isn't one of the points, the others are the first of them.
             let had = Some(taken[place(at)]).filter(|n| *n > 1).unwrap_or(0);
-            let points = &self.patterns.of(x, y)[had as usize..];
-            self.points.extend(points.iter().map(|[u, v]| [x as f64 + u, y as f64 + v]));
-            self.whose.resize(self.points.len(), i);
-            self.sums.push(pixels[place(at)].map(|mean| had as f64 * mean as f64));
+            let (before, points) = self.patterns.of(x, y).split_at(had as usize);
+            self.points.extend(points.iter().map(|Point { at: [u, v], .. }| [x as f64 + u, y as f64 + v]));
+            self.whose.extend(points.iter().map(|p| (i, p.sign)));
+            let of_before = before.iter().fold(0.0, |sum, p| sum + p.sign);
+            let signs = points.iter().fold(of_before, |sum, p| sum + p.sign);
+            self.sums.push((pixels[place(at)].map(|mean| of_before * mean as f64), signs));
         }
-        let rect = [part.x + first[0], y + first[1], part.x + last[0] + 1, y + last[1] + 1].map(f64::from);
+        let beyond = self.patterns.beyond;
+        let [left, top] = [part.x + first[0], y + first[1]].map(|at| at as f64 - beyond);
+        let [right, bottom] = [part.x + last[0] + 1, y + last[1] + 1].map(|at| at as f64 + beyond);
+        let rect = [left, top, right, bottom];
         let (sums, whose) = (&mut self.sums, &self.whose);
         self.sampler.trace(rect, &self.points, &mut |i, light| {
-            let sum = &mut sums[whose[i] as usize];
-            (0..3).for_each(|c| sum[c] += light[c]);
+            let (of, sign) = whose[i];
+            let (sum, _) = &mut sums[of as usize];
+            (0..3).for_each(|c| sum[c] += sign * light[c]);
         });
         if cancel.load(Relaxed) {
             return;
         }
-        for (at, sum) in self.edges.iter().map(|at| place(*at)).zip(&self.sums) {
-            (pixels[at], taken[at]) = (sum.map(|s| (s / rays as f64) as f32), rays);
+        for (at, (sum, signs)) in self.edges.iter().map(|at| place(*at)).zip(&self.sums) {
+            (pixels[at], taken[at]) = (sum.map(|s| (s / signs) as f32), rays);
         }
     }
 }
