@@ -112,6 +112,7 @@ fn usage_errors() {
         "render ball.scene --size 4",
         "render ball.scene --aa grid:0",
         "render ball.scene --aa grid:33",
+        "render ball.scene --filter sinc",
         "render ball.scene --max-depth 101",
         "render ball.scene --threads 0",
         "render ball.scene --precision f16",
@@ -205,7 +206,7 @@ fn stats_json_has_every_field() {
     let stats: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(stats["size"], serde_json::json!([16, 12]));
     assert_eq!(stats["threads"], 1, "one tile is work for one");
-    assert_eq!(stats["precision"], "f64");
+    assert_eq!((&stats["precision"], &stats["filter"]), (&"f64".into(), &"box".into()));
     assert_eq!(stats["samples_per_pixel"], 4.0);
     assert_eq!(stats["rays"]["camera"], 16 * 12 * 4);
     for phase in ["parse", "evaluate", "world", "render", "encode", "total"] {
@@ -248,6 +249,31 @@ fn the_command_line_wins() {
     let (_, stderr) = desk.expect(1, "render far.scene --size 4x3 --precision f32");
     assert!(stderr.contains("32-bit") && stderr.contains("far.scene:1:1"), "{stderr}");
     desk.expect(0, "render ball.scene --camera top --precision f32 --max-depth 0 --aa grid:3 -o top.png");
+}
+
+#[test]
+fn filters_from_the_text_and_the_command_line() {
+    let desk = Desk::new();
+    let hash = |arguments: &str, filter: &str| {
+        let (stdout, _) = desk.expect(0, &format!("render --stats json ball.scene -o f.png {arguments}"));
+        let stats: Value = serde_json::from_str(&stdout).unwrap();
+        assert_eq!(stats["filter"], filter, "{arguments}");
+        stats["image_hash"].as_str().unwrap().to_owned()
+    };
+    let plain = hash("--aa grid:3", "box");
+    assert_eq!(hash("--aa grid:3 --filter box", "box"), plain);
+    let sharp = hash("--aa grid:3 --filter mitchell", "mitchell");
+    let file = fs::File::open(desk.path("f.png")).unwrap();
+    let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    let recipe = &reader.info().uncompressed_latin1_text;
+    let settings = recipe.iter().find(|t| t.keyword == "rtdsl:settings").unwrap();
+    assert!(settings.text.contains(" aa=grid:3 filter=mitchell "), "{}", settings.text);
+    let soft = hash("--aa grid:3 --filter gauss", "gauss");
+    assert!(plain != sharp && plain != soft && sharp != soft);
+    assert_eq!(hash("--aa off --filter gauss", "gauss"), hash("--aa off", "box"), "one ray is shown as it is");
+    let stated = hash("--max-error 8/255 --filter gauss --threads 1", "gauss");
+    assert_eq!(hash("--max-error 8/255 --filter gauss --threads 3", "gauss"), stated);
+    assert_ne!(hash("--max-error 8/255", "box"), stated);
 }
 
 #[test]

@@ -2,13 +2,13 @@
 
 use super::accuracy::AccuracyArgs;
 use super::argument::{
-    address, anti_aliasing, assignment, bits, compression, crop, glob_pattern, max_error, pixel, poll_interval,
+    address, anti_aliasing, assignment, bits, compression, crop, filter, glob_pattern, max_error, pixel, poll_interval,
     precision, seconds, size,
 };
 use super::trade::axis::Axis;
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
-use crate::scene::{AntiAliasing, Precision, Settings, range};
+use crate::scene::{AntiAliasing, PixelFilter, Precision, Settings, range};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::net::SocketAddr;
@@ -76,6 +76,10 @@ pub struct ViewArgs {
     /// Rays a pixel: `off` for one, `grid:N` for N x N (up to 32), `adaptive:N` for one and up to N more where neighbours differ.
     #[arg(long, value_name = "off|grid:N|adaptive:N", value_parser = anti_aliasing)]
     pub aa: Option<AntiAliasing>,
+    /// How a pixel's light is weighed: `box`, the mean over its square; `mitchell`, sharp; `gauss`, soft. One ray a pixel is
+    /// shown as it is.
+    #[arg(long, value_name = "box|mitchell|gauss", value_parser = filter)]
+    pub filter: Option<PixelFilter>,
     /// Reflections and transmissions one after another, up to 100.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=Settings::LARGEST_DEPTH as i64))]
     pub max_depth: Option<u32>,
@@ -195,6 +199,9 @@ pub struct GalleryArgs {
     /// Rays a pixel: `off`, `grid:N` for N x N, `adaptive:N` for one and up to N more where neighbours differ. [default: the scene's own]
     #[arg(long, value_name = "off|grid:N|adaptive:N", value_parser = anti_aliasing)]
     pub aa: Option<AntiAliasing>,
+    /// How a pixel's light is weighed. [default: the scene's own]
+    #[arg(long, value_name = "box|mitchell|gauss", value_parser = filter)]
+    pub filter: Option<PixelFilter>,
     /// Let the scenes read files in this folder too.
     #[arg(long, value_name = "DIR")]
     pub allow_read: Vec<PathBuf>,

@@ -2,7 +2,7 @@
 
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
-use crate::scene::{Accuracy, AntiAliasing, Precision, range};
+use crate::scene::{Accuracy, AntiAliasing, PixelFilter, Precision, range};
 use std::net::SocketAddr;
 use std::time::Duration;
 
@@ -44,6 +44,11 @@ pub fn anti_aliasing(s: &str) -> Result<AntiAliasing, String> {
         Ok(n) if (least..=most).contains(&n) => Ok(make(n)),
         _ => Err(format!("{is} a whole number from {least} to {most}, not `{n}`")),
     }
+}
+
+/// `box`, `mitchell` or `gauss`.
+pub fn filter(s: &str) -> Result<PixelFilter, String> {
+    PixelFilter::named(s).ok_or_else(|| "write `box`, `mitchell` (sharp) or `gauss` (soft)".into())
 }
 
 /// `2/255` or `0.01`.
@@ -186,6 +191,8 @@ mod tests {
         {
             assert!(anti_aliasing(wrong).is_err(), "{wrong}");
         }
+        assert_eq!(PixelFilter::NAMED.map(|(name, _)| filter(name)), PixelFilter::NAMED.map(|(_, f)| Ok(f)));
+        assert!(filter("Box").is_err() && filter("").is_err());
         assert_eq!((max_error("2/255"), max_error("0.01")), (Ok(2.0 / 255.0), Ok(0.01)));
         for wrong in ["2", "0", "1/0", "-1/255", "2/", "x", "nan", "", "1e-9"] {
             assert!(max_error(wrong).is_err(), "{wrong}");

@@ -6,7 +6,7 @@ use super::sight::Sight;
 use super::{Exit, Stop};
 use crate::diag::{Diagnostic, Sources};
 use crate::render::{self, Feature, Options, World};
-use crate::scene::{AntiAliasing, Camera};
+use crate::scene::{AntiAliasing, Camera, PixelFilter};
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
@@ -48,6 +48,11 @@ fn heading(name: &str, camera: &Camera, options: &Options) -> String {
         AntiAliasing::Adaptive(n) => format!("1 to {n} rays a pixel"),
         aa if aa.side() == 1 => "1 ray a pixel".to_string(),
         aa => format!("{} rays a pixel", aa.side() * aa.side()),
+    };
+    let rays = match options.filter {
+        // One ray a pixel is shown as it is.
+        filter if filter == PixelFilter::Box || options.takes_one_ray() => rays,
+        filter => format!("{rays}, filter {}", filter.name()),
     };
     let instructions = render::instructions(options.instructions);
     let at_a_time = match render::rays_at_a_time(options.instructions, options.precision) {

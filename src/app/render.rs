@@ -80,6 +80,7 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
             size: [part.width, part.height],
             threads,
             precision: precision_word(options.precision),
+            filter: options.filter.name(),
             samples_per_pixel: rays.camera as f64 / (part.width as f64 * part.height as f64),
             accuracy: certificate.as_deref().map(|c| AccuracyStats::of(c, &part)),
             rays: rays.into(),

@@ -15,6 +15,8 @@ pub struct Stats {
     pub threads: usize,
     /// `"f64"` or `"f32"`.
     pub precision: &'static str,
+    /// `"box"`, `"mitchell"` or `"gauss"`.
+    pub filter: &'static str,
     /// Camera rays a pixel; with a stated error, on average.
     pub samples_per_pixel: f64,
     /// What can be said of the picture's error, where that was asked for.
@@ -148,6 +150,7 @@ impl Stats {
             ("size", format!("{w}x{h}")),
             ("threads", self.threads.to_string()),
             ("precision", self.precision.to_string()),
+            ("filter", self.filter.to_string()),
             ("samples per pixel", self.samples_per_pixel.to_string()),
             ("accuracy", self.accuracy.as_ref().map_or("not asked for".into(), |a| a.line.clone())),
             (
@@ -190,6 +193,7 @@ mod tests {
             size: [4, 3],
             threads: 2,
             precision: "f64",
+            filter: "box",
             samples_per_pixel: 4.0,
             accuracy: None,
             rays: RayCounts { camera: 48, shadow: 10, reflected: 2, transmitted: 1 }.into(),

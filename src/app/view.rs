@@ -4,7 +4,7 @@ use super::Stop;
 use super::args::ViewArgs;
 use crate::diag::Diagnostic;
 use crate::render::{Crop, Options};
-use crate::scene::{Accuracy, AntiAliasing, Camera, Precision, Scene};
+use crate::scene::{Accuracy, AntiAliasing, Camera, PixelFilter, Precision, Scene};
 
 impl ViewArgs {
     /// How to trace `scene`.
@@ -15,6 +15,7 @@ impl ViewArgs {
             // So many rays, whatever the scene wants them to achieve.
             (options.aa, options.accuracy) = (aa, None);
         }
+        options.filter = self.filter.unwrap_or(options.filter);
         options.max_depth = self.max_depth.unwrap_or(options.max_depth);
         options.precision = self.precision.unwrap_or(options.precision);
         options
@@ -79,6 +80,9 @@ pub fn settings_line(options: &Options, camera: &Camera) -> String {
             line += &format!(" confidence={confidence}");
         }
     }
+    if options.filter != PixelFilter::Box {
+        line += &format!(" filter={}", options.filter.name());
+    }
     line += &format!(" max-depth={} precision={}", options.max_depth, precision_word(options.precision));
     if let Some(name) = &camera.name {
         line += &format!(" camera={name}");
@@ -118,7 +122,8 @@ mod tests {
     use super::*;
     use crate::app::Exit;
 
-    const NONE: ViewArgs = ViewArgs { size: None, aa: None, max_depth: None, camera: None, precision: None };
+    const NONE: ViewArgs =
+        ViewArgs { size: None, aa: None, filter: None, max_depth: None, camera: None, precision: None };
 
     #[test]
     fn the_command_line_wins() {
@@ -129,6 +134,9 @@ mod tests {
         assert_eq!((options.width, options.height, options.max_depth), (3, 2, 0));
         let line = settings_line(&options, &scene.cameras[0]);
         assert_eq!(line, "size=3x2 aa=grid:4 max-depth=0 precision=f64");
+        let sharp = ViewArgs { filter: Some(PixelFilter::Mitchell), ..args }.options(&scene);
+        let line = settings_line(&sharp, &scene.cameras[0]);
+        assert_eq!(line, "size=3x2 aa=grid:4 filter=mitchell max-depth=0 precision=f64");
     }
 
     #[test]

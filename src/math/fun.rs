@@ -1,7 +1,7 @@
 //! Elementary functions with the same bits on every machine: pinned pure-Rust `libm`, and trigonometry of angles in
 //! degrees whose exact cases are exact (`cos(90deg)` is 0, `sin(30deg)` is 0.5).
 
-pub use libm::{acos, asin, atan, atan2, cbrt, exp, exp2, hypot, log as ln, log1p, log2, log10, pow, sqrt};
+pub use libm::{acos, asin, atan, atan2, cbrt, erf, exp, exp2, hypot, log as ln, log1p, log2, log10, pow, sqrt};
 
 /// Sine of an angle in degrees. Exact at every multiple of 30° where the sine is rational.
 pub fn sin_deg(degrees: f64) -> f64 {

@@ -3,7 +3,7 @@
 use super::certify::Certificate;
 use crate::diag::Place;
 use crate::film::Film;
-use crate::scene::{Accuracy, AntiAliasing, MaterialId, NodeId, Precision, Settings};
+use crate::scene::{Accuracy, AntiAliasing, MaterialId, NodeId, PixelFilter, Precision, Settings};
 
 /// How to trace: the scene's settings with the command line's changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Options {
     pub height: u32,
     /// Rays a pixel, where no accuracy is asked for.
     pub aa: AntiAliasing,
+    /// How a pixel's light is weighed; one ray through its middle is shown as it is.
+    pub filter: PixelFilter,
     /// How close to the truth the picture has to come; then `aa` isn't looked at, and `precision` is 64 bits.
     pub accuracy: Option<Accuracy>,
     /// The distance of codes that will be written, as a share of white: an error is told with their rounding. 0 where colours
@@ -64,6 +66,7 @@ impl Options {
             width: s.width,
             height: s.height,
             aa: s.aa,
+            filter: s.filter,
             accuracy: s.accuracy,
             quantum: 1.0 / 255.0,
             max_depth: s.max_depth,
@@ -94,6 +97,11 @@ impl Options {
     /// Whether tiles are made one by one, each for itself, in one go.
     pub fn is_by_tiles(&self) -> bool {
         self.accuracy.is_none() && !matches!(self.aa, AntiAliasing::Adaptive(_))
+    }
+
+    /// Whether every pixel is one ray through its middle.
+    pub fn takes_one_ray(&self) -> bool {
+        self.is_by_tiles() && self.aa.side() == 1
     }
 
     /// The part that is made, written out.

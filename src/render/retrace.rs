@@ -9,6 +9,7 @@ use super::dispatch::{render, render_tiles};
 use super::footprint::Footprint;
 use super::material::MOST_SPACES;
 use super::options::{Crop, Options, Progress, RayCounts, Rendered};
+use super::taps::Taps;
 use super::world::World;
 use crate::film::Film;
 use crate::math::Real;
@@ -179,6 +180,8 @@ struct Difference<'w> {
     change: &'w Change,
     world: &'w World,
     grid: PixelGrid<'w>,
+    /// What of other pixels' rays a tile's are made of.
+    taps: Option<Taps>,
     margin: f64,
     nothing: bool,
     /// Everything seen looks different.
@@ -205,6 +208,7 @@ impl<'w> Difference<'w> {
             change,
             world,
             grid: world.camera.grid(options),
+            taps: Taps::of_picture(options),
             margin: margin(unit_roundoff),
             ambient,
             lights,
@@ -239,7 +243,8 @@ impl<'w> Difference<'w> {
             found
         };
         let (x, y) = (tile.x as f64, tile.y as f64);
-        let rect = [x, y, x + tile.width as f64, y + tile.height as f64];
+        let own = [x, y, x + tile.width as f64, y + tile.height as f64];
+        let rect = self.taps.as_ref().map_or(own, |taps| taps.rect(tile));
         let frustum = self.grid.frustum(rect, self.margin);
         if some(&|b| frustum.may_meet(b))
             || planes().any(|p| self.grid.may_meet_plane(rect, p.n, p.offset, self.margin))

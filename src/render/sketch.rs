@@ -111,7 +111,8 @@ impl<'w> Sketch<'w> {
     /// reached are left as they are. `progress` is told of what is in `part` of the picture.
     pub fn pass(&mut self, pass: Pass, (part, progress): (Crop, &dyn Progress), cancel: &AtomicBool) -> bool {
         let all = self.options.crop_or_all();
-        let (world, options, points) = (self.world, self.options, Points::of(pass.lattice, &self.points));
+        let (world, options, points) =
+            (self.world, self.options, Points::of(pass.lattice, &self.points, self.options.filter));
         // Workers' memory is made once.
         let idle = Mutex::new(Vec::new());
         let worker = || {

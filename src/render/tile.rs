@@ -1,10 +1,14 @@
 //! One tile of the picture: which rays, in which order, and how their colours become pixels.
+//!
+//! With a filter beyond the box, pixels share rays with their neighbours. A tile traces those of the neighbours that it needs itself:
+//! so it stays independent of all others, for up to 1.4 times as many rays.
 
-use super::batch::NONE;
+use super::batch::{MOST, NONE};
 use super::camera::PixelGrid;
 use super::cull::margin;
 use super::footprint::Recorder;
 use super::options::{Crop, Options};
+use super::taps::{Tap, Taps};
 use super::tracer::Tracer;
 use super::world::World;
 use crate::math::{Elem, Lane};
@@ -33,17 +37,30 @@ pub struct TileWorker<'w, L: Lane> {
     sums: [Box<[f64]>; 3],
     /// How far right each column of the tile looks.
     across: Vec<f64>,
+    /// What a filter beyond the box needs.
+    filtered: Option<Filtered>,
+}
+
+/// Weights, and the light of one ray of each pixel of a tile and of those around it.
+struct Filtered {
+    taps: Taps,
+    /// By channel, row by row.
+    light: [Vec<f64>; 3],
 }
 
 impl<'w, L: Lane> TileWorker<'w, L> {
     /// A worker for tiles of up to [`Options::tile_side`]² pixels.
     pub fn new(world: &'w World, options: &Options, cancel: &'w AtomicBool, recorder: Recorder) -> Self {
         let n = (options.tile_side() * options.tile_side()) as usize;
+        let side = options.aa.side();
+        let filtered = Taps::of_picture(options).map(|taps| Filtered { taps, light: Default::default() });
+        // Rays of neighbours, too.
+        let most = if filtered.is_some() { MOST } else { n };
         let mut tracer = Tracer::new(world, options.max_depth, cancel, recorder);
         let grid = world.camera.grid(options);
         let batch = tracer.camera_rays();
         // What all camera rays have in common is written once.
-        for i in 0..n {
+        for i in 0..most {
             for c in 0..3 {
                 batch.weight[c][i] = L::Elem::from_f64(1.0);
                 batch.d[c][i] = L::Elem::from_f64(grid.forward()[c]);
@@ -52,12 +69,17 @@ impl<'w, L: Lane> TileWorker<'w, L> {
             batch.source[i] = L::Elem::from_f64(NONE);
         }
         let sums = [(); 3].map(|_| vec![0.0; n].into_boxed_slice());
-        TileWorker { world, grid, side: options.aa.side(), tracer, sums, across: Vec::new() }
+        TileWorker { world, grid, side, tracer, sums, across: Vec::new(), filtered }
     }
 
     /// Renders the pixels of `tile` into its rows.
     #[inline(always)]
     pub fn render(&mut self, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
+        if let Some(mut filtered) = self.filtered.take() {
+            self.render_filtered(tile, rows, &mut filtered);
+            self.filtered = Some(filtered);
+            return;
+        }
         let n = (tile.width * tile.height) as usize;
         let samples = self.side * self.side;
         if !self.sum_up(tile) {
@@ -92,7 +114,9 @@ impl<'w, L: Lane> TileWorker<'w, L> {
     /// Adds up the rays of each pixel of `tile`, until cancelled; false where they all see the background.
     #[inline(always)]
     fn sum_up(&mut self, tile: Crop) -> bool {
-        if !self.find_candidates(tile) {
+        let (x, y) = (tile.x as f64, tile.y as f64);
+        let rect = [x, y, x + tile.width as f64, y + tile.height as f64];
+        if !self.find_candidates(rect, (tile.width * tile.height * self.side * self.side) as usize) {
             return false;
         }
         let n = (tile.width * tile.height) as usize;
@@ -101,7 +125,8 @@ impl<'w, L: Lane> TileWorker<'w, L> {
                 if self.tracer.is_cancelled() {
                     return true;
                 }
-                self.camera_rays(tile, [sx, sy]);
+                let at = [tile.x as f64, tile.y as f64];
+                self.camera_rays(at, [tile.width as usize, tile.height as usize], [sx, sy]);
                 self.tracer.recorder().sample();
                 match self.world.camera.at_eye() {
                     true => self.tracer.trace::<true>(),
@@ -118,17 +143,66 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         true
     }
 
-    /// Finds what the tile's camera rays may meet; false where that is nothing.
+    /// Renders the pixels of `tile` from their own rays and their neighbours'.
     #[inline(always)]
-    fn find_candidates(&mut self, tile: Crop) -> bool {
-        let (x, y) = (tile.x as f64, tile.y as f64);
-        let rect = [x, y, x + tile.width as f64, y + tile.height as f64];
+    fn render_filtered(&mut self, tile: Crop, rows: &mut [&mut [[f32; 3]]], filtered: &mut Filtered) {
+        let (width, height) = (tile.width as usize, tile.height as usize);
+        let rect = filtered.taps.rect(tile);
+        let background = self.world.background.map(|c| L::Elem::from_f64(c).to_f64());
+        if !self.find_candidates(rect, width * height * (self.side * self.side) as usize) {
+            rows.iter_mut().for_each(|row| row.fill(background.map(stored)));
+            self.tracer.counts.camera += (self.side * self.side) as u64 * (width * height) as u64;
+            self.tracer.recorder().saw_background();
+            return;
+        }
+        self.sums.iter_mut().for_each(|sums| sums[..width * height].fill(0.0));
+        for sy in 0..self.side {
+            for sx in 0..self.side {
+                let Filtered { taps, light } = &mut *filtered;
+                let (across, down) = (taps.of(sx), taps.of(sy));
+                let columns = width + across.weights.len() - 1;
+                let all_rows = height + down.weights.len() - 1;
+                light.iter_mut().for_each(|light| light.clear());
+                self.tracer.recorder().sample();
+                // As many rows at a time as a batch has room for.
+                for from in (0..all_rows).step_by(MOST / columns) {
+                    if self.tracer.is_cancelled() {
+                        return;
+                    }
+                    let at = [tile.x as f64 + across.first as f64, tile.y as f64 + (down.first as f64 + from as f64)];
+                    let size = [columns, (MOST / columns).min(all_rows - from)];
+                    self.camera_rays(at, size, [sx, sy]);
+                    match self.world.camera.at_eye() {
+                        true => self.tracer.trace::<true>(),
+                        false => self.tracer.trace::<false>(),
+                    }
+                    for c in 0..3 {
+                        // Less the background, so that where nothing else is seen exactly that is shown.
+                        let radiance = &self.tracer.radiance[c][..size[0] * size[1]];
+                        light[c].extend(radiance.iter().map(|l| l.to_f64() - background[c]));
+                    }
+                }
+                for (light, sums) in light.iter_mut().zip(&mut self.sums) {
+                    weigh(light, [width, height], [across, down], sums);
+                }
+            }
+        }
+        for (y, row) in rows.iter_mut().enumerate() {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                *pixel = [0, 1, 2].map(|c| stored(background[c] + self.sums[c][y * width + x]));
+            }
+        }
+    }
+
+    /// Finds what so many camera rays through `rect` may meet; false where that is nothing.
+    #[inline(always)]
+    fn find_candidates(&mut self, rect: [f64; 4], rays: usize) -> bool {
         let margin = margin(L::UNIT_ROUNDOFF);
         let frustum = self.grid.frustum(rect, margin);
         let grid = &self.grid;
         self.tracer.candidates.gather(
             self.world,
-            (tile.width * tile.height * self.side * self.side) as usize,
+            rays,
             #[inline(always)]
             |b| frustum.may_meet(b),
             |n, offset| grid.may_meet_plane(rect, n, offset, margin),
@@ -136,22 +210,21 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         !self.tracer.candidates.is_empty()
     }
 
-    /// One ray a pixel: sample (sx, sy) of each.
+    /// One ray a pixel: sample (sx, sy) of each of those from `left` and `top` on.
     #[inline(always)]
-    fn camera_rays(&mut self, tile: Crop, [sx, sy]: [u32; 2]) {
+    fn camera_rays(&mut self, [left, top]: [f64; 2], [width, height]: [usize; 2], [sx, sy]: [u32; 2]) {
         // A sample's place in its pixel; a middle is exact for every grid whose side is a power of two.
         let (ox, oy) = ((sx as f64 + 0.5) / self.side as f64, (sy as f64 + 0.5) / self.side as f64);
         self.across.clear();
-        self.across.extend((tile.x..tile.x + tile.width).map(|x| self.grid.across(x as f64 + ox)));
+        self.across.extend((0..width).map(|x| self.grid.across((left + x as f64) + ox)));
         let parallel = !self.world.camera.at_eye();
         let batch = self.tracer.camera_rays();
-        batch.len = (tile.width * tile.height) as usize;
-        let width = tile.width as usize;
-        for py in 0..tile.height {
-            let (right, base) = self.grid.row((tile.y + py) as f64 + oy);
+        batch.len = width * height;
+        for py in 0..height {
+            let (right, base) = self.grid.row((top + py as f64) + oy);
             let columns = if parallel { &mut batch.o } else { &mut batch.d };
             for c in 0..3 {
-                let row = &mut columns[c][py as usize * width..][..width];
+                let row = &mut columns[c][py * width..][..width];
                 for (to, sx) in row.iter_mut().zip(&self.across) {
                     *to = L::Elem::from_f64(right[c].mul_add(*sx, base[c]));
                 }
@@ -174,13 +247,36 @@ impl Mean {
         Mean { samples: count, reciprocal: samples.is_power_of_two().then_some(1.0 / count) }
     }
 
-    /// The mean, as it is stored. Brighter than `f32` can hold becomes the brightest that it can.
+    /// The mean, as it is stored.
     #[inline(always)]
     pub fn resolve(&self, sum: f64) -> f32 {
         let mean = match self.reciprocal {
             Some(factor) => sum * factor,
             None => sum / self.samples,
         };
-        mean.clamp(-(f32::MAX as f64), f32::MAX as f64) as f32
+        stored(mean)
+    }
+}
+
+/// Light as it is stored. Brighter than `f32` can hold becomes the brightest that it can.
+#[inline(always)]
+fn stored(light: f64) -> f32 {
+    light.clamp(-(f32::MAX as f64), f32::MAX as f64) as f32
+}
+
+/// Adds to each pixel of a tile what its taps see: `light` has that of the tile and its surroundings, row by row, and is used up.
+fn weigh(light: &mut [f64], [width, height]: [usize; 2], [across, down]: [&Tap; 2], sums: &mut [f64]) {
+    let columns = width + across.weights.len() - 1;
+    for row in light.chunks_exact_mut(columns) {
+        for x in 0..width {
+            // What lies before isn't needed any more.
+            row[x] = row[x..].iter().zip(&across.weights).fold(0.0, |sum, (l, w)| sum + l * w);
+        }
+    }
+    for y in 0..height {
+        for x in 0..width {
+            let column = light[y * columns + x..].iter().step_by(columns);
+            sums[y * width + x] += column.zip(&down.weights).fold(0.0, |sum, (l, w)| sum + l * w);
+        }
     }
 }

@@ -23,5 +23,5 @@ pub use light::Light;
 pub use material::{Material, MaterialId};
 pub use mesh::{Mesh, MeshData, MeshId};
 pub use pattern::{Filter, Mapping, Pattern, PatternId, PatternKind};
-pub use settings::{Accuracy, AntiAliasing, Precision, Settings};
+pub use settings::{Accuracy, AntiAliasing, PixelFilter, Precision, Settings};
 pub use shape::Shape;

@@ -9,6 +9,8 @@ pub struct Settings {
     pub height: u32,
     /// Rays a pixel, where no accuracy is asked for.
     pub aa: AntiAliasing,
+    /// How much the light counts that comes from around a pixel's middle.
+    pub filter: PixelFilter,
     /// How close to the truth the picture has to come; as many rays as that takes.
     pub accuracy: Option<Accuracy>,
     /// Reflections and transmissions that a camera ray may go through, one after another; 0 shows surfaces alone.
@@ -44,12 +46,46 @@ impl AntiAliasing {
     }
 }
 
+/// How much the light counts that comes from around a pixel's middle: the same to all four sides, and 1 in all. What a pixel shows
+/// is the light times these weights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelFilter {
+    /// The same all over the pixel's square, nothing beyond: the mean.
+    #[default]
+    Box,
+    /// Sharp: the cubic with a third each of blur and ringing, from a square of 4 pixels a side; its rim counts against the light.
+    /// (Mitchell, Netravali, "Reconstruction filters in computer graphics", SIGGRAPH 1988.)
+    Mitchell,
+    /// Soft: a bell of standard deviation ½, less its value at 1½ pixels, where it ends.
+    Gauss,
+}
+
+impl PixelFilter {
+    /// All of them by their names in a scene.
+    pub const NAMED: [(&'static str, PixelFilter); 3] =
+        [("box", PixelFilter::Box), ("mitchell", PixelFilter::Mitchell), ("gauss", PixelFilter::Gauss)];
+
+    /// That of a name.
+    pub fn named(name: &str) -> Option<PixelFilter> {
+        Self::NAMED.into_iter().find(|(n, _)| *n == name).map(|(_, filter)| filter)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "box",
+            PixelFilter::Mitchell => "mitchell",
+            PixelFilter::Gauss => "gauss",
+        }
+    }
+}
+
 /// What is asked of a picture instead of a number of rays: an error, a time, or both, and then whichever is reached first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Largest error of any channel of any pixel, as a share of white after the sRGB curve, [`LEAST_ERROR`](Self::LEAST_ERROR) to
     /// [`LARGEST_ERROR`](Self::LARGEST_ERROR): 2/255 are two codes of 8 bits. It is the distance from the pixel's true colour,
-    /// which is the mean over its square. `None` for the least that the time allows.
+    /// which is the mean over its square, or what its filter makes of the light. `None` for the least that the time allows.
     pub error: Option<f64>,
     /// Seconds of tracing. `None` for as many as it takes.
     pub time: Option<f64>,
@@ -90,6 +126,7 @@ impl Default for Settings {
             width: 640,
             height: 480,
             aa: AntiAliasing::Off,
+            filter: PixelFilter::Box,
             accuracy: None,
             max_depth: 8,
             precision: Precision::F64,

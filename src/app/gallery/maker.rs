@@ -16,7 +16,7 @@ use crate::diag::Diagnostic;
 use crate::film::{self, Film, Format, Recipe};
 use crate::lang::{self, Evaluated, Memory};
 use crate::render::{self, Retracer};
-use crate::scene::{AntiAliasing, range};
+use crate::scene::{AntiAliasing, PixelFilter, range};
 use std::io::{self, Cursor};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
@@ -120,6 +120,7 @@ impl Maker<'_> {
             thumbnail: small.map(|s| [s.width, s.height]),
             grid: options.aa.side(),
             adaptive: if let AntiAliasing::Adaptive(n) = options.aa { Some(n) } else { None },
+            filter: (options.filter != PixelFilter::Box).then(|| options.filter.name().into()),
             max_depth: options.max_depth,
             precision: precision_word(options.precision).into(),
             rays: [rays.camera, rays.shadow, rays.reflected, rays.transmitted],
@@ -151,7 +152,14 @@ impl Maker<'_> {
             let note = format!("the scene's own size is {}x{}", settings.width, settings.height);
             return Err(Stop::scene(d.note(note), &evaluated.sources));
         }
-        Ok(ViewArgs { size, aa: self.project.aa, max_depth: None, camera: None, precision: None })
+        Ok(ViewArgs {
+            size,
+            aa: self.project.aa,
+            filter: self.project.filter,
+            max_depth: None,
+            camera: None,
+            precision: None,
+        })
     }
 }
 

@@ -67,6 +67,9 @@ pub struct Figures {
     /// The most rays a pixel where only those get more that differ from their neighbours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptive: Option<u32>,
+    /// How a pixel's light is weighed, where that isn't the box.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filter: Option<String>,
     /// Reflections and transmissions one after another.
     pub max_depth: u32,
     /// `f64` or `f32`.

@@ -168,13 +168,13 @@ pub fn figures(f: &Figures) -> Vec<(&'static str, String)> {
         (None, 1) => "1".into(),
         (None, n) => format!("{} ({n} × {n})", n * n),
     };
-    let mut rows = vec![
-        ("size", format!("{width} × {height} pixels")),
-        ("rays a pixel", a_pixel),
+    let mut rows = vec![("size", format!("{width} × {height} pixels")), ("rays a pixel", a_pixel)];
+    rows.extend(f.filter.iter().map(|filter| ("filter", filter.clone())));
+    rows.extend([
         ("depth", f.max_depth.to_string()),
         ("arithmetic", f.precision.clone()),
         ("rays", thousands(camera + shadow + reflected + transmitted)),
-    ];
+    ]);
     let kinds = [
         ("… from the camera", camera),
         ("… to lights", shadow),

@@ -9,7 +9,7 @@ use crate::app::args::GalleryArgs;
 use crate::app::view::aa_word;
 use crate::diag::Diagnostic;
 use crate::lang::Evaluated;
-use crate::scene::AntiAliasing;
+use crate::scene::{AntiAliasing, PixelFilter};
 use std::collections::HashMap;
 use std::fs;
 use std::io;
@@ -38,6 +38,8 @@ pub struct Project {
     pub width: Option<u32>,
     /// Rays a pixel, if not the scene's own.
     pub aa: Option<AntiAliasing>,
+    /// How a pixel's light is weighed, if not the scene's own way.
+    pub filter: Option<PixelFilter>,
     /// Folders that scenes may read besides.
     pub allow_read: Vec<PathBuf>,
     /// Digests of files in this run, by path.
@@ -88,6 +90,7 @@ impl Project {
             old,
             width: args.width,
             aa: args.aa,
+            filter: args.filter,
             allow_read: args.allow_read.clone(),
             digests: Mutex::default(),
         })
@@ -108,13 +111,16 @@ impl Project {
     pub fn view_words(&self, size: [u32; 2]) -> Vec<String> {
         let size = self.width.map(|_| ["--size".into(), format!("{}x{}", size[0], size[1])]);
         let aa = self.aa.map(|aa| ["--aa".into(), aa_word(aa)]);
-        size.into_iter().chain(aa).flatten().collect()
+        let filter = self.filter.map(|f| ["--filter".into(), f.name().into()]);
+        size.into_iter().chain(aa).chain(filter).flatten().collect()
     }
 
     /// The digest of what decides a picture that is made with `files` now.
     pub fn key<'a>(&self, files: impl IntoIterator<Item = (&'a str, String)>) -> String {
         let allowed: Vec<String> = self.allow_read.iter().map(|p| p.display().to_string()).collect();
         let options = format!("{:?} {:?} {allowed:?}", self.width, self.aa);
+        // Without it the digest is as it was before there were filters.
+        let options = self.filter.map_or(options.clone(), |f| format!("{options} {}", f.name()));
         let files = files.into_iter().flat_map(|(path, digest)| [path.to_string(), digest]);
         let parts: Vec<String> = [PICTURES.to_string(), options].into_iter().chain(files).collect();
         digest_of(parts.iter().map(String::as_str))

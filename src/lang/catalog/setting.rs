@@ -5,7 +5,7 @@ use crate::lang::build::Build;
 use crate::lang::fault::{Fault, Outcome};
 use crate::lang::value::Value;
 use crate::lang::word::{Args, Default, Host, Kind, Run, Ty, Word, optional, required};
-use crate::scene::{Accuracy, AntiAliasing, Camera, Precision, Projection, Settings, range};
+use crate::scene::{Accuracy, AntiAliasing, Camera, PixelFilter, Precision, Projection, Settings, range};
 
 pub const WORDS: &[Word] = &[
     Word {
@@ -73,6 +73,7 @@ pub const WORDS: &[Word] = &[
             optional("time", Ty::Number, Default::Absent, "instead of `aa`: seconds; the picture gets as good as it can meanwhile, and says how good that is")
                 .within(Accuracy::LEAST_TIME, Accuracy::LONGEST_TIME),
             optional("precision", Ty::Choice(&["f64", "f32"]), Default::Text("f64"), "the arithmetic: 64 or 32 bits; 32 bits hold lengths from 1e-18 to 1e18"),
+            optional("filter", Ty::Choice(&["box", "mitchell", "gauss"]), Default::Text("box"), "how a pixel's light is weighed: alike all over its square; sharp, from 4 × 4 pixels; or soft, from 3 × 3. One ray a pixel is shown as it is"),
         ],
         doc: "How large and how good the picture is.",
         example: "sphere()\nlight(at: [4, 8, 6])\nrender(size: [320, 200], aa: grid(2), depth: 5)",
@@ -199,6 +200,7 @@ fn render(host: &mut dyn Host, a: &[Value]) -> Outcome {
         }
         settings.accuracy = Some(Accuracy { error, time, confidence: Accuracy::CONFIDENCE });
     }
+    settings.filter = PixelFilter::named(a.text(6)).unwrap_or_default();
     settings.precision = if a.text(5) == "f32" { Precision::F32 } else { Precision::F64 };
     Ok(Value::None)
 }

@@ -11,7 +11,7 @@ mod unused;
 
 use super::limits::Limits;
 use super::*;
-use crate::scene::{AntiAliasing, NodeKind, PatternKind, Shape};
+use crate::scene::{AntiAliasing, NodeKind, PatternKind, PixelFilter, Shape};
 use std::path::PathBuf;
 
 fn request(text: &str) -> Request {
@@ -123,10 +123,19 @@ fn the_seed_scene_is_read_word_for_word() {
 }
 
 #[test]
+fn filters_have_names() {
+    for (name, filter) in PixelFilter::NAMED {
+        let e = scene(&format!("rtdsl 1\nsphere()\nrender(filter: \"{name}\")\n"));
+        assert_eq!((e.scene.settings.filter, filter.name()), (filter, name));
+    }
+}
+
+#[test]
 fn the_spiral_is_read_word_for_word() {
     let e = scene(SPIRAL);
     assert_eq!(e.scene.instance_count(), 242);
     assert_eq!(e.scene.settings.aa, AntiAliasing::Grid(2));
+    assert_eq!(e.scene.settings.filter, PixelFilter::Box);
     assert_eq!(e.params.len(), 2);
     assert_eq!(e.params[0].kind, ParamKind::Number { range: Some((10.0, 2000.0)), whole: true, unit: "" });
     let node = e.scene.node(e.scene.roots[60]);

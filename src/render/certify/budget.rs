@@ -5,6 +5,7 @@ use super::super::crew::{crew, useful};
 use super::super::options::Options;
 use super::certifier::Certifier;
 use super::looks::Found;
+use super::memo::Memo;
 use super::target::Target;
 use crate::math::hash::KeyedHash;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -41,7 +42,7 @@ pub fn affordable(certifier: &Certifier<'_>, options: &Options, target: &Target,
                 let side = STEP.min(size[k] - corner[k]);
                 corner[k] + (key.with(k as u64).bits() % side as u64) as u32
             });
-            if let Found::Planned(plan) = certifier.looks(at, target, target.samples).found {
+            if let Found::Planned(plan) = certifier.looks(&mut Memo::default(), at, target, target.samples).found {
                 needs.push(plan.total);
             }
         }

@@ -2,6 +2,7 @@
 
 use super::super::bounds::{Bounds, larger, smaller};
 use super::super::camera::PixelGrid;
+use super::super::filter::Kernel;
 use super::super::material::{Slot, Surfacing};
 use super::super::options::Options;
 use super::super::pattern::PatternNode;
@@ -10,6 +11,7 @@ use super::super::world::World;
 use super::bound::{Bound, Span, hull};
 use super::study::Study;
 use super::target::Target;
+use super::window::Window;
 use crate::math::Form;
 
 /// A world, as seen by its camera in a picture of a given size, about which certificates are made.
@@ -18,6 +20,8 @@ pub struct Certifier<'w> {
     pub(super) grid: PixelGrid<'w>,
     /// How often rays go on.
     pub(super) depth: u32,
+    /// Where a pixel's light comes from.
+    pub(super) window: Window,
     /// Where the light surely lies that rays see which go on so many times more, and every part of that light.
     ceilings: Vec<[Span; 3]>,
     /// The same for what each material gives back.
@@ -34,7 +38,8 @@ impl<'w> Certifier<'w> {
         let depth = options.max_depth;
         let patterns = pattern_ranges(world);
         let (gives, ceilings) = ceilings(world, &patterns, depth);
-        Certifier { world, grid: world.camera.grid(options), depth, ceilings, gives, patterns, faint: 0.0 }
+        let (grid, window) = (world.camera.grid(options), Window::new(Kernel::of(options.filter)));
+        Certifier { world, grid, depth, window, ceilings, gives, patterns, faint: 0.0 }
     }
 
     /// For pictures that are to reach a target: then what is too faint to matter is left unknown.

@@ -8,6 +8,7 @@ use super::super::sobol;
 use super::bound::Span;
 use super::sampler::Sampler;
 use super::target::Target;
+use super::window::{Spot, Window};
 use crate::math::fun;
 use crate::math::hash::KeyedHash;
 
@@ -30,11 +31,11 @@ pub struct Estimate {
     pub samples: u32,
 }
 
-/// Samples a pixel, twice as often each time, until `is_enough` says whether that is so, or the budget is spent. `range` is where its
-/// light lies, `onward` where that of any ray lies that goes on.
+/// Samples pixel `at`, twice as often each time, until `is_enough` says whether that is so, or the budget is spent. `range` is where its
+/// value lies by the range of its light alone, `onward` where the light of any ray lies that goes on.
 pub fn estimate(
     sampler: &mut dyn Sampler,
-    rect: [f64; 4],
+    (window, at): (&Window, [u32; 2]),
     (target, budget): (&Target, u32),
     (range, onward): ([Span; 3], [Span; 3]),
     key: KeyedHash,
@@ -46,36 +47,43 @@ pub fn estimate(
     let mut sums = [[0.0; 3]; REPLICATES];
     let (mut done, mut left_out) = (0, 0.0);
     sampler.left_out();
-    let mut points = Vec::new();
+    let rect = window.of(at);
+    // With negative weights, what all points have in common is left out of their sum: the less is left to chance.
+    let common = if window.size() > 1.0 { middle(sampler, at) } else { [0.0; 3] };
+    let (mut points, mut signs) = (Vec::new(), Vec::new());
     for look in 0..looks {
         let n = FIRST << look;
         for (replicate, sum) in sums.iter_mut().enumerate() {
             let key = key.with(replicate as u64);
             points.clear();
-            points.extend((done..n).map(|i| {
-                let [u, v] = sobol::point(i, key);
-                [rect[0] + u * (rect[2] - rect[0]), rect[1] + v * (rect[3] - rect[1])]
-            }));
-            sampler.trace(rect, &points, &mut |_, light| {
+            signs.clear();
+            for i in done..n {
+                let Spot { at, sign, .. } = window.spot(at, rect, sobol::point(i, key));
+                points.push(at);
+                signs.push(sign);
+            }
+            sampler.trace(rect, &points, &mut |i, light| {
                 for c in 0..3 {
-                    sum[c] += light[c];
+                    sum[c] += signs[i] * (light[c] - common[c]);
                 }
             });
         }
         done = n;
         let samples = n * REPLICATES as u32;
         left_out += sampler.left_out();
-        let lost = left_out / samples as f64;
+        let lost = window.size() * (left_out / samples as f64);
         let mut e = Estimate { value: [0.0; 3], half_width: [0.0; 3], left_out: [0.0; 3], samples };
         for c in 0..3 {
-            let means = sums.map(|s| s[c] / n as f64);
+            let means = sums.map(|s| common[c] + window.size() * (s[c] / n as f64));
             let mean = means.iter().sum::<f64>() / REPLICATES as f64;
             let squares: f64 = means.iter().map(|m| (m - mean) * (m - mean)).sum();
             let deviation = (squares / ((REPLICATES - 1) * REPLICATES) as f64).sqrt();
             let unseen = (range[c][1] - range[c][0]) * 3.0 / samples as f64;
-            // Weights are negative where light may be, too; then its range is as wide to both sides.
+            // Weights of rays are negative where light may be, too; then its range is as wide to both sides. As it is with negative
+            // weights of points.
             let [lo, hi] = onward[c];
-            let (middle, off) = if lo < 0.0 { (0.0, lost * hi) } else { (0.5 * lost * hi, 0.5 * lost * hi) };
+            let (middle, off) =
+                if lo < 0.0 || window.size() > 1.0 { (0.0, lost * hi) } else { (0.5 * lost * hi, 0.5 * lost * hi) };
             e.value[c] = larger(smaller(mean + middle, range[c][1]), range[c][0]);
             e.half_width[c] = larger(t * deviation, unseen) + off;
             e.left_out[c] = off;
@@ -85,6 +93,15 @@ pub fn estimate(
         }
     }
     None
+}
+
+/// The light in the middle of a pixel.
+fn middle(sampler: &mut dyn Sampler, at: [u32; 2]) -> [f64; 3] {
+    let [x, y] = at.map(f64::from);
+    let mut found = [0.0; 3];
+    sampler.trace([x, y, x + 1.0, y + 1.0], &[[x + 0.5, y + 0.5]], &mut |_, light| found = light);
+    sampler.left_out();
+    found
 }
 
 /// The t that Student's distribution with an odd number of degrees of freedom exceeds, in magnitude, with probability `alpha`

@@ -7,16 +7,19 @@
 use super::super::bounds::{larger, smaller};
 use super::bound::{Bound, Span};
 use super::target::{Target, room};
-use crate::math::fun;
+use super::window::Weights;
+use crate::math::{Form, fun};
 
 /// A region of a pixel.
 pub struct Leaf {
     /// Its rectangle in the picture.
     pub rect: [f64; 4],
-    /// Its share of the pixel's area.
-    pub share: f64,
+    /// How it is weighed.
+    pub weights: Weights,
     /// What is known of it.
     pub bound: Bound,
+    /// What it adds to the pixel's value, by channel.
+    pub part: [Span; 3],
     /// Its share of what isn't known, in codes.
     pub width: f64,
     /// Whether it is better divided into rows than into quarters.
@@ -46,39 +49,39 @@ pub struct Plan {
 }
 
 impl Leaf {
-    /// What is known of the mean over the region.
-    fn mean(&self, c: usize) -> Span {
-        self.bound.sum[c].map(|x| 0.25 * x)
-    }
-
-    /// How far apart samples can be, less what the form says of them.
-    fn spread(&self, c: usize) -> f64 {
+    /// What is taken off the light of samples: a form from which it is less far than its range is wide, or the range's middle.
+    pub fn taken_off(&self, c: usize) -> Form {
         let [lo, hi] = self.bound.range[c];
-        match self.bound.form {
-            Some(f) if f[c].is_known() => smaller(2.0 * f[c].r, hi - lo),
-            _ => hi - lo,
-        }
+        let form = self.bound.form.map(|f| f[c]).filter(|f| f.is_known() && 2.0 * f.r <= hi - lo);
+        let form = form.unwrap_or_else(|| Form { r: 0.5 * (hi - lo), ..Form::constant(0.5 * lo + 0.5 * hi) });
+        // Where all weights are the same, what is the same everywhere makes no difference.
+        if self.weights.plain { Form { c: 0.0, ..form } } else { form }
     }
 
-    /// How far the middle of its mean may be off in the pixel's.
+    /// How far apart samples can be, less that.
+    fn spread(&self, c: usize) -> f64 {
+        2.0 * self.taken_off(c).r
+    }
+
+    /// How far the middle of its part may be off.
     fn half(&self, c: usize) -> f64 {
-        let [lo, hi] = self.mean(c);
-        0.5 * self.share * (hi - lo)
+        let [lo, hi] = self.part[c];
+        0.5 * (hi - lo)
     }
 
     /// Its need for samples: by how much they may move the pixel's mean, over the room there is.
     fn weight(&self, room: &[f64; 3]) -> f64 {
-        (0..3).map(|c| self.share * self.spread(c) / room[c]).fold(0.0, larger)
+        (0..3).map(|c| self.weights.size * self.spread(c) / room[c]).fold(0.0, larger)
     }
 }
 
-/// Bounds of the pixel's mean, by channel.
+/// Bounds of the pixel's value, by channel.
 pub fn total(leaves: &[Leaf]) -> [Span; 3] {
     [0, 1, 2].map(|c| {
         let (mut lo, mut hi, mut size) = (0.0, 0.0, 0.0);
         for leaf in leaves {
-            let [l, h] = leaf.mean(c);
-            (lo, hi, size) = (lo + leaf.share * l, hi + leaf.share * h, size + leaf.share * larger(l.abs(), h.abs()));
+            let [l, h] = leaf.part[c];
+            (lo, hi, size) = (lo + l, hi + h, size + larger(l.abs(), h.abs()));
         }
         // Every sum is off by as many roundings as it has terms, at most.
         let slack = 4.0 * f64::EPSILON * leaves.len() as f64 * size;
@@ -140,7 +143,7 @@ impl Sketch {
                 match n {
                     0 => rest += leaf.half(c),
                     n => {
-                        let spread = leaf.share * leaf.spread(c);
+                        let spread = leaf.weights.size * leaf.spread(c);
                         squares += spread * spread / n as f64;
                     }
                 }

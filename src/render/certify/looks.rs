@@ -1,9 +1,10 @@
 //! Looks at a pixel: its regions, divided where most is unknown, and when to stop.
 
 use super::super::bounds::{larger, smaller};
-use super::bound::{Bound, Span};
+use super::bound::Span;
 use super::certifier::Certifier;
 use super::leaves::{Leaf, Plan, Sketch, judged, total};
+use super::memo::Memo;
 use super::target::{Pixel, Status, Target, code};
 use crate::math::fun;
 
@@ -58,14 +59,21 @@ pub enum Found {
 impl Certifier<'_> {
     /// Looks at pixel (x, y), divided where most is unknown, until it is proved or up to `affordable` samples are the better
     /// choice.
-    pub fn looks(&self, [x, y]: [u32; 2], target: &Target, affordable: u32) -> Looked {
-        let rect = [x as f64, y as f64, x as f64 + 1.0, y as f64 + 1.0];
-        let mut leaves = vec![self.leaf(rect, 1.0, [1.0; 3])];
+    pub fn looks(&self, memo: &mut Memo, at: [u32; 2], target: &Target, affordable: u32) -> Looked {
+        let mut leaf = |rect: [f64; 4], slopes: [f64; 3]| {
+            let (bound, in_rows) = memo.looked_at(self, rect);
+            let weights = self.window.weights(at, rect);
+            let part = weights.part(&bound);
+            Leaf { rect, weights, part, width: width(&part, slopes), bound, in_rows }
+        };
+        let mut leaves: Vec<Leaf> =
+            self.window.first_regions(at).into_iter().map(|rect| leaf(rect, [1.0; 3])).collect();
         let slopes = total(&leaves).map(slope);
-        leaves[0].width = width(&leaves[0].bound, 1.0, slopes);
-        let (mut evaluations, mut check) = (1, 1);
+        leaves.iter_mut().for_each(|leaf| leaf.width = width(&leaf.part, slopes));
+        let (first, all) = (leaves.len() as u32, leaves.iter().map(|l| l.width).sum::<f64>());
+        let (mut evaluations, mut check) = (first, first);
         // After how many looks, and what was unknown then; at first as if it were an edge.
-        let mut before = (0.5, leaves[0].width / EDGE);
+        let mut before = (0.5 * first as f64, all / EDGE);
         loop {
             let (value, half_width, codes) = judged(total(&leaves), target);
             if codes <= target.codes {
@@ -79,7 +87,7 @@ impl Certifier<'_> {
                 let shrunk = fun::pow(all / before.1, 1.0 / doublings);
                 let sketch = Sketch::new(&leaves, target);
                 let samples = sketch.as_ref().map_or(f64::INFINITY, |s| s.samples);
-                let outlook = Outlook { evaluations, width: all, shrunk, samples };
+                let outlook = Outlook { evaluations, price: PRICE / first as f64, width: all, shrunk, samples };
                 if spent || !outlook.is_good(target, affordable) {
                     let plan = sketch.and_then(|s| s.plan(&leaves, target, affordable));
                     let found = plan.map_or(Found::Hopeless, Found::Planned);
@@ -88,22 +96,17 @@ impl Certifier<'_> {
                 (check, before) = (2 * evaluations, (evaluations as f64, all));
             }
             let widest = (1..leaves.len()).fold(0, |w, i| if leaves[i].width > leaves[w].width { i } else { w });
-            let leaf = leaves.swap_remove(widest);
-            let [l, t, r, b] = leaf.rect;
+            let divided = leaves.swap_remove(widest);
+            let [l, t, r, b] = divided.rect;
             let (cx, cy) = (0.5 * (l + r), 0.5 * (t + b));
             let rows = [[l, t, r, cy], [l, cy, r, b]];
             let quarters = [[l, t, cx, cy], [cx, t, r, cy], [l, cy, cx, b], [cx, cy, r, b]];
-            let parts = if leaf.in_rows { &rows[..] } else { &quarters[..] };
+            let parts = if divided.in_rows { &rows[..] } else { &quarters[..] };
             for rect in parts {
-                leaves.push(self.leaf(*rect, leaf.share / parts.len() as f64, slopes));
+                leaves.push(leaf(*rect, slopes));
             }
             evaluations += parts.len() as u32;
         }
-    }
-
-    fn leaf(&self, rect: [f64; 4], share: f64, slopes: [f64; 3]) -> Leaf {
-        let (bound, in_rows) = self.looked_at(rect);
-        Leaf { rect, share, width: width(&bound, share, slopes), bound, in_rows }
     }
 }
 
@@ -111,6 +114,8 @@ impl Certifier<'_> {
 struct Outlook {
     /// Looks so far.
     evaluations: u32,
+    /// Samples in the time of one: windows that overlap share their looks.
+    price: f64,
     /// What is unknown after them, in codes: the sum over all regions.
     width: f64,
     /// That over what it was after half as many.
@@ -129,19 +134,19 @@ impl Outlook {
         if samples > far * affordable && done > 1.0 && self.shrunk > STUCK {
             return false;
         }
-        if done < smaller(FIRST_LOOKS, samples / PRICE) {
+        if done < smaller(FIRST_LOOKS, samples / self.price) {
             return true;
         }
         // Of both ends' errors the rounding of codes takes a quarter each, on the average.
         let proved = self.looks_until((2.0 * target.codes - 0.5 * target.quantum) / self.width, EDGE);
-        if proved <= most && proved - done <= PROOF + WORTH * smaller(samples, affordable) / PRICE {
+        if proved <= most && proved - done <= PROOF + WORTH * smaller(samples, affordable) / self.price {
             return true;
         }
         // As many samples are needed as the square of the width says.
         if samples > affordable {
             return self.looks_until((affordable / samples).sqrt(), SLOW) <= most;
         }
-        samples * (1.0 - self.shrunk * self.shrunk) > done * PRICE
+        samples * (1.0 - self.shrunk * self.shrunk) > done * self.price
     }
 
     /// Looks after which the unknown is this share of what it is, if it goes on shrinking as it did, or `at_least` so fast.
@@ -151,9 +156,9 @@ impl Outlook {
     }
 }
 
-/// What is unknown of a region, in codes of the pixel.
-fn width(bound: &Bound, share: f64, slopes: [f64; 3]) -> f64 {
-    (0..3).map(|c| share * (bound.sum[c][1] - bound.sum[c][0]) * slopes[c]).fold(0.0, larger)
+/// What is unknown of a region, in codes of the pixel, times 4.
+fn width(part: &[Span; 3], slopes: [f64; 3]) -> f64 {
+    (0..3).map(|c| 4.0 * (part[c][1] - part[c][0]) * slopes[c]).fold(0.0, larger)
 }
 
 /// Codes for a unit of light, over an interval.

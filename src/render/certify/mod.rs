@@ -16,6 +16,7 @@ mod estimate;
 mod leaves;
 mod lit;
 mod looks;
+mod memo;
 mod met;
 mod noise;
 mod picture;
@@ -31,6 +32,7 @@ pub(super) mod tests;
 mod texels;
 mod visible;
 mod waves;
+mod window;
 
 pub use asked::Certificate;
 pub(super) use asked::render;

@@ -9,8 +9,10 @@ use super::bound::Span;
 use super::budget::affordable;
 use super::certifier::Certifier;
 use super::leaves::judged;
+use super::memo::Memo;
 use super::sampler::Sampler;
 use super::target::{Pixel, Status, Target};
+use super::window::Window;
 use crate::math::Form;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -66,6 +68,7 @@ pub fn refine(
         let mut work = Work {
             certifier: &certifier,
             sampler: &mut *sampler(world, options, control.cancel),
+            memo: Memo::default(),
             picture: [options.width, options.height],
             target,
             affordable,
@@ -151,6 +154,7 @@ impl Block<'_> {
 struct Work<'w> {
     certifier: &'w Certifier<'w>,
     sampler: &'w mut dyn Sampler,
+    memo: Memo,
     picture: [u32; 2],
     target: &'w Target,
     /// The most samples of a pixel that certainty may cost.
@@ -171,15 +175,20 @@ impl Work<'_> {
             return;
         }
         if side == 1 {
-            let pixel = self.certifier.pixel(self.sampler, [x, y], self.target, self.affordable);
+            let memo = &mut self.memo;
+            let pixel = self.certifier.pixel(self.sampler, memo, [x, y], self.target, self.affordable);
             return self.put(block, [x, y], pixel);
         }
         // Squares that reach beyond the picture are looked at in parts.
         let within = x + side <= self.picture[0] && y + side <= self.picture[1];
         if within && self.target.certificates {
-            let rect = [x as f64, y as f64, (x + side) as f64, (y + side) as f64];
+            let window = self.certifier.window;
+            let [from, to] = [[x, y], [x + side, y + side]];
+            let [left, top] = from.map(|i| i as f64 - window.beyond());
+            let [right, bottom] = to.map(|i| i as f64 + window.beyond());
             self.spent += 1;
-            if let Some(pixels) = self.certifier.form(rect).and_then(|form| all_proved(form, side, self.target)) {
+            let form = self.certifier.form([left, top, right, bottom]);
+            if let Some(pixels) = form.and_then(|form| all_proved(form, side, &window, self.target)) {
                 for (at, pixel) in places().zip(pixels) {
                     if block.pixel(at).is_some_and(|p| !p.keeps(codes)) {
                         self.put(block, at, pixel);
@@ -206,8 +215,9 @@ impl Work<'_> {
     }
 }
 
-/// The pixels of a square whose light is `form` all over; `None` unless that proves every one of them.
-fn all_proved(form: [Form; 3], side: u32, target: &Target) -> Option<Vec<Pixel>> {
+/// The pixels of a square whose light is `form` all over, in all of their windows; `None` unless that proves every one of them.
+/// Windows are symmetric, so the linear part adds what it is in the pixel's middle.
+fn all_proved(form: [Form; 3], side: u32, window: &Window, target: &Target) -> Option<Vec<Pixel>> {
     if form.iter().any(|f| !f.is_known()) {
         return None;
     }
@@ -216,11 +226,12 @@ fn all_proved(form: [Form; 3], side: u32, target: &Target) -> Option<Vec<Pixel>>
     let (mut last, mut found) = ([[f64::NAN; 2]; 3], ([0.0; 3], [0.0; 3], 0.0));
     for j in 0..side {
         for i in 0..side {
-            let centre = |k: u32| (2 * k + 1) as f64 / side as f64 - 1.0;
+            let reach = side as f64 + 2.0 * window.beyond();
+            let centre = |k: u32| ((2 * k + 1) as f64 + 2.0 * window.beyond()) / reach - 1.0;
             let known: [Span; 3] = form.map(|f| {
                 let mean = f.c + (f.x * centre(i) + f.y * centre(j));
                 // Two products and two sums, and the interval's ends.
-                let off = f.r + 8.0 * f64::EPSILON * (f.c.abs() + f.x.abs() + f.y.abs() + f.r);
+                let off = window.size() * f.r + 8.0 * f64::EPSILON * (f.c.abs() + f.x.abs() + f.y.abs() + f.r);
                 [mean - off, mean + off]
             });
             if known != last {

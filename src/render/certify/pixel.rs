@@ -6,8 +6,10 @@ use super::certifier::Certifier;
 use super::estimate::{Estimate, estimate};
 use super::leaves::{Leaf, Plan, judged, total};
 use super::looks::{Found, Looked};
+use super::memo::Memo;
 use super::sampler::Sampler;
 use super::target::{Pixel, Status, Target, stored};
+use super::window::Spot;
 use crate::math::hash::KeyedHash;
 
 /// Tags of what random numbers are for.
@@ -16,12 +18,19 @@ const REPLICATE: u64 = 2;
 
 impl Certifier<'_> {
     /// Brings pixel (x, y) to its target as far as the target's budgets allow; with up to `affordable` samples for certainty.
-    pub fn pixel(&self, sampler: &mut dyn Sampler, at: [u32; 2], target: &Target, affordable: u32) -> Pixel {
+    pub fn pixel(
+        &self,
+        sampler: &mut dyn Sampler,
+        memo: &mut Memo,
+        at: [u32; 2],
+        target: &Target,
+        affordable: u32,
+    ) -> Pixel {
         if !target.certificates {
-            let range = self.ceiling(self.depth);
+            let range = self.ceiling(self.depth).map(|r| self.window.spanned(r));
             return self.estimated(sampler, at, (range, range), 0, target);
         }
-        let Looked { leaves, evaluations, found } = self.looks(at, target, affordable);
+        let Looked { leaves, evaluations, found } = self.looks(memo, at, target, affordable);
         match found {
             Found::Proved(pixel) => pixel,
             Found::Planned(plan) => self.sampled(sampler, at, &leaves, (&plan, evaluations), target),
@@ -30,6 +39,7 @@ impl Certifier<'_> {
                 for leaf in &leaves {
                     range = [0, 1, 2].map(|c| hull(range[c], leaf.bound.range[c]));
                 }
+                let range = range.map(|r| self.window.spanned(r));
                 self.estimated(sampler, at, (total(&leaves), range), evaluations, target)
             }
         }
@@ -39,41 +49,37 @@ impl Certifier<'_> {
     fn sampled(
         &self,
         sampler: &mut dyn Sampler,
-        [x, y]: [u32; 2],
+        at: [u32; 2],
         leaves: &[Leaf],
         (plan, evaluations): (&Plan, u32),
         target: &Target,
     ) -> Pixel {
-        let key = KeyedHash::new().with(JITTER).with(x as u64).with(y as u64);
+        let key = KeyedHash::new().with(JITTER).with(at[0] as u64).with(at[1] as u64);
         let mut points = Vec::with_capacity(plan.total as usize);
         let mut whose = Vec::with_capacity(plan.total as usize);
         let mut value = [0.0; 3];
         for (i, (leaf, &n)) in leaves.iter().zip(&plan.samples).enumerate() {
-            if n == 0 {
-                let middle = |c: usize| 0.125 * (leaf.bound.sum[c][0] + leaf.bound.sum[c][1]);
-                value = [0, 1, 2].map(|c| value[c] + leaf.share * middle(c));
-            }
-            let [l, t, r, b] = leaf.rect;
+            let settled = |c: usize| match n {
+                0 => 0.5 * (leaf.part[c][0] + leaf.part[c][1]),
+                _ => leaf.weights.of_linear(leaf.taken_off(c)),
+            };
+            value = [0, 1, 2].map(|c| value[c] + settled(c));
             for k in 0..n {
                 // One in each of n upright strips.
                 let unit = |axis: u64| key.with(i as u64).with(k as u64).with(axis).unit();
-                let (u, v) = ((k as f64 + unit(0)) / n as f64, unit(1));
-                points.push([l + u * (r - l), t + v * (b - t)]);
-                whose.push((i, [2.0 * u - 1.0, 2.0 * v - 1.0]));
+                let spot = self.window.spot(at, leaf.rect, [(k as f64 + unit(0)) / n as f64, unit(1)]);
+                points.push(spot.at);
+                whose.push((i, spot));
             }
         }
-        let rect = [x as f64, y as f64, x as f64 + 1.0, y as f64 + 1.0];
-        sampler.trace(rect, &points, &mut |k, light| {
-            let (i, [xi, eta]) = whose[k];
+        sampler.trace(self.window.of(at), &points, &mut |k, light| {
+            let (i, Spot { inner: [xi, eta], sign, .. }) = whose[k];
             let leaf = &leaves[i];
-            let weight = leaf.share / plan.samples[i] as f64;
+            let weight = sign * leaf.weights.size / plan.samples[i] as f64;
             for c in 0..3 {
-                // The linear part has the mean 0: without it samples are closer together.
-                let linear = match leaf.bound.form {
-                    Some(f) if f[c].is_known() => f[c].x * xi + f[c].y * eta,
-                    _ => 0.0,
-                };
-                value[c] += weight * (light[c] - linear);
+                // Its integral is known: without it samples are closer together, and as far to both sides.
+                let known = leaf.taken_off(c);
+                value[c] += weight * (light[c] - (known.c + (known.x * xi + known.y * eta)));
             }
         });
         let known = total(leaves);
@@ -87,17 +93,17 @@ impl Certifier<'_> {
         Pixel { value, half_width: plan.half_width, codes, status, evaluations, samples: plan.total }
     }
 
-    /// Samples of the whole pixel, where bounds are of no use; its mean is `known` to lie somewhere, and its light in `range`.
+    /// Samples of the whole pixel, where bounds are of no use; its value is `known` to lie somewhere, and in `range` by the range of
+    /// its light alone.
     fn estimated(
         &self,
         sampler: &mut dyn Sampler,
-        [x, y]: [u32; 2],
+        at: [u32; 2],
         (known, range): ([Span; 3], [Span; 3]),
         evaluations: u32,
         target: &Target,
     ) -> Pixel {
-        let rect = [x as f64, y as f64, x as f64 + 1.0, y as f64 + 1.0];
-        let key = KeyedHash::new().with(REPLICATE).with(x as u64).with(y as u64);
+        let key = KeyedHash::new().with(REPLICATE).with(at[0] as u64).with(at[1] as u64);
         let codes = |value: [f64; 3], half: [f64; 3]| {
             let one = |c: usize| {
                 let both: Span = [larger(value[c] - half[c], known[c][0]), smaller(value[c] + half[c], known[c][1])];
@@ -114,11 +120,11 @@ impl Certifier<'_> {
         let brightest = (0..3).map(|c| onward[c][1]).fold(0.0, larger);
         let budget = (target, target.samples);
         sampler.leave_out(if brightest > 0.0 { target.faint() / brightest } else { 0.0 });
-        let mut found = estimate(sampler, rect, budget, (range, onward), key, enough);
+        let mut found = estimate(sampler, (&self.window, at), budget, (range, onward), key, enough);
         sampler.leave_out(0.0);
         if found.as_ref().is_some_and(|(e, reached)| !reached && e.left_out != [0.0; 3]) {
             let traced = found.map_or(0, |(e, _)| e.samples);
-            found = estimate(sampler, rect, budget, (range, onward), key, enough);
+            found = estimate(sampler, (&self.window, at), budget, (range, onward), key, enough);
             found.iter_mut().for_each(|(e, _)| e.samples += traced);
         }
         match found {
