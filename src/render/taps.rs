@@ -51,6 +51,14 @@ impl Taps {
         [x - before, y - before, x + (tile.width as f64 + behind), y + (tile.height as f64 + behind)]
     }
 
+    /// The pixels whose rays (sx, sy) a tile's pixels are made of: left and top of the first, columns and rows.
+    pub fn patch(&self, tile: Crop, [sx, sy]: [u32; 2]) -> ([f64; 2], [usize; 2]) {
+        let (across, down) = (self.of(sx), self.of(sy));
+        let at = [tile.x as f64 + across.first as f64, tile.y as f64 + down.first as f64];
+        let size = [(tile.width, across), (tile.height, down)].map(|(own, tap)| own as usize + tap.weights.len() - 1);
+        (at, size)
+    }
+
     /// By how many pixels rays lie before and behind.
     fn reach(&self) -> [u32; 2] {
         let before = self.each.iter().map(|t| -t.first).max().unwrap_or(0);

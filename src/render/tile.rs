@@ -8,7 +8,7 @@ use super::camera::PixelGrid;
 use super::cull::margin;
 use super::footprint::Recorder;
 use super::options::{Crop, Options};
-use super::taps::{Tap, Taps};
+use super::taps::Taps;
 use super::tracer::Tracer;
 use super::world::World;
 use crate::math::{Elem, Lane};
@@ -75,22 +75,20 @@ impl<'w, L: Lane> TileWorker<'w, L> {
     /// Renders the pixels of `tile` into its rows.
     #[inline(always)]
     pub fn render(&mut self, tile: Crop, rows: &mut [&mut [[f32; 3]]]) {
-        if let Some(mut filtered) = self.filtered.take() {
-            self.render_filtered(tile, rows, &mut filtered);
-            self.filtered = Some(filtered);
-            return;
-        }
         let n = (tile.width * tile.height) as usize;
         let samples = self.side * self.side;
+        let background = self.background();
         if !self.sum_up(tile) {
             // Nothing here: the same sums as below, of one pixel, for all.
-            let background = self.world.background.map(|c| L::Elem::from_f64(c).to_f64());
             let mut sum = [0.0; 3];
             for _ in 0..samples {
                 sum = std::array::from_fn(|c| sum[c] + background[c]);
             }
             let mean = Mean::of(samples);
-            let pixel = sum.map(|s| mean.resolve(s));
+            let pixel = match self.filtered {
+                None => sum.map(|s| mean.resolve(s)),
+                Some(_) => background.map(stored),
+            };
             rows.iter_mut().for_each(|row| row.fill(pixel));
             self.tracer.counts.camera += samples as u64 * n as u64;
             self.tracer.recorder().saw_background();
@@ -100,98 +98,78 @@ impl<'w, L: Lane> TileWorker<'w, L> {
             return;
         }
         let mean = Mean::of(samples);
+        let is_filtered = self.filtered.is_some();
         let [red, green, blue] = &self.sums;
         let mut i = 0;
         for row in rows {
             let colors = red[i..].iter().zip(&green[i..]).zip(&blue[i..]);
             i += row.len();
             for (pixel, ((r, g), b)) in row.iter_mut().zip(colors) {
-                *pixel = [mean.resolve(*r), mean.resolve(*g), mean.resolve(*b)];
+                *pixel = match is_filtered {
+                    false => [mean.resolve(*r), mean.resolve(*g), mean.resolve(*b)],
+                    true => [stored(background[0] + r), stored(background[1] + g), stored(background[2] + b)],
+                };
             }
         }
     }
 
-    /// Adds up the rays of each pixel of `tile`, until cancelled; false where they all see the background.
+    /// The background, as rays see it.
+    #[inline(always)]
+    fn background(&self) -> [f64; 3] {
+        self.world.background.map(|c| L::Elem::from_f64(c).to_f64())
+    }
+
+    /// Adds up the rays of each pixel of `tile`, until cancelled; false where they all see the background. With a filter they are
+    /// weighed, and what they have more than the background is added up: so where nothing else is seen exactly that is shown.
     #[inline(always)]
     fn sum_up(&mut self, tile: Crop) -> bool {
         let (x, y) = (tile.x as f64, tile.y as f64);
-        let rect = [x, y, x + tile.width as f64, y + tile.height as f64];
+        let own = [x, y, x + tile.width as f64, y + tile.height as f64];
+        let rect = self.filtered.as_ref().map_or(own, |f| f.taps.rect(tile));
         if !self.find_candidates(rect, (tile.width * tile.height * self.side * self.side) as usize) {
             return false;
         }
         let n = (tile.width * tile.height) as usize;
+        let background = self.background();
         for sy in 0..self.side {
             for sx in 0..self.side {
-                if self.tracer.is_cancelled() {
-                    return true;
-                }
-                let at = [tile.x as f64, tile.y as f64];
-                self.camera_rays(at, [tile.width as usize, tile.height as usize], [sx, sy]);
-                self.tracer.recorder().sample();
-                match self.world.camera.at_eye() {
-                    true => self.tracer.trace::<true>(),
-                    false => self.tracer.trace::<false>(),
-                }
                 let is_first = sx == 0 && sy == 0;
-                for (sums, radiance) in self.sums.iter_mut().zip(&self.tracer.radiance) {
-                    for (sum, light) in sums[..n].iter_mut().zip(&radiance[..n]) {
-                        *sum = if is_first { 0.0 } else { *sum } + light.to_f64();
-                    }
-                }
-            }
-        }
-        true
-    }
-
-    /// Renders the pixels of `tile` from their own rays and their neighbours'.
-    #[inline(always)]
-    fn render_filtered(&mut self, tile: Crop, rows: &mut [&mut [[f32; 3]]], filtered: &mut Filtered) {
-        let (width, height) = (tile.width as usize, tile.height as usize);
-        let rect = filtered.taps.rect(tile);
-        let background = self.world.background.map(|c| L::Elem::from_f64(c).to_f64());
-        if !self.find_candidates(rect, width * height * (self.side * self.side) as usize) {
-            rows.iter_mut().for_each(|row| row.fill(background.map(stored)));
-            self.tracer.counts.camera += (self.side * self.side) as u64 * (width * height) as u64;
-            self.tracer.recorder().saw_background();
-            return;
-        }
-        self.sums.iter_mut().for_each(|sums| sums[..width * height].fill(0.0));
-        for sy in 0..self.side {
-            for sx in 0..self.side {
-                let Filtered { taps, light } = &mut *filtered;
-                let (across, down) = (taps.of(sx), taps.of(sy));
-                let columns = width + across.weights.len() - 1;
-                let all_rows = height + down.weights.len() - 1;
-                light.iter_mut().for_each(|light| light.clear());
+                let ([left, top], [columns, all_rows]) = match &self.filtered {
+                    None => ([x, y], [tile.width as usize, tile.height as usize]),
+                    Some(filtered) => filtered.taps.patch(tile, [sx, sy]),
+                };
                 self.tracer.recorder().sample();
-                // As many rows at a time as a batch has room for.
+                // As many rows at a time as a batch has room for: without a filter all.
                 for from in (0..all_rows).step_by(MOST / columns) {
                     if self.tracer.is_cancelled() {
-                        return;
+                        return true;
                     }
-                    let at = [tile.x as f64 + across.first as f64, tile.y as f64 + (down.first as f64 + from as f64)];
-                    let size = [columns, (MOST / columns).min(all_rows - from)];
-                    self.camera_rays(at, size, [sx, sy]);
+                    let rows = (MOST / columns).min(all_rows - from);
+                    self.camera_rays([left, top + from as f64], [columns, rows], [sx, sy]);
                     match self.world.camera.at_eye() {
                         true => self.tracer.trace::<true>(),
                         false => self.tracer.trace::<false>(),
                     }
-                    for c in 0..3 {
-                        // Less the background, so that where nothing else is seen exactly that is shown.
-                        let radiance = &self.tracer.radiance[c][..size[0] * size[1]];
-                        light[c].extend(radiance.iter().map(|l| l.to_f64() - background[c]));
+                    if let Some(filtered) = &mut self.filtered {
+                        for ((light, radiance), b) in
+                            filtered.light.iter_mut().zip(&self.tracer.radiance).zip(background)
+                        {
+                            light.extend(radiance[..columns * rows].iter().map(|l| l.to_f64() - b));
+                        }
+                        continue;
+                    }
+                    for (sums, radiance) in self.sums.iter_mut().zip(&self.tracer.radiance) {
+                        for (sum, light) in sums[..n].iter_mut().zip(&radiance[..n]) {
+                            *sum = if is_first { 0.0 } else { *sum } + light.to_f64();
+                        }
                     }
                 }
-                for (light, sums) in light.iter_mut().zip(&mut self.sums) {
-                    weigh(light, [width, height], [across, down], sums);
+                if let Some(filtered) = &mut self.filtered {
+                    filtered.weigh(tile, [sx, sy], &mut self.sums, is_first);
                 }
             }
         }
-        for (y, row) in rows.iter_mut().enumerate() {
-            for (x, pixel) in row.iter_mut().enumerate() {
-                *pixel = [0, 1, 2].map(|c| stored(background[c] + self.sums[c][y * width + x]));
-            }
-        }
+        true
     }
 
     /// Finds what so many camera rays through `rect` may meet; false where that is nothing.
@@ -264,19 +242,28 @@ fn stored(light: f64) -> f32 {
     light.clamp(-(f32::MAX as f64), f32::MAX as f64) as f32
 }
 
-/// Adds to each pixel of a tile what its taps see: `light` has that of the tile and its surroundings, row by row, and is used up.
-fn weigh(light: &mut [f64], [width, height]: [usize; 2], [across, down]: [&Tap; 2], sums: &mut [f64]) {
-    let columns = width + across.weights.len() - 1;
-    for row in light.chunks_exact_mut(columns) {
-        for x in 0..width {
-            // What lies before isn't needed any more.
-            row[x] = row[x..].iter().zip(&across.weights).fold(0.0, |sum, (l, w)| sum + l * w);
-        }
-    }
-    for y in 0..height {
-        for x in 0..width {
-            let column = light[y * columns + x..].iter().step_by(columns);
-            sums[y * width + x] += column.zip(&down.weights).fold(0.0, |sum, (l, w)| sum + l * w);
+impl Filtered {
+    /// Adds to each pixel of a tile what its taps see of ray (sx, sy) of pixels; or begins with that. The light is used up.
+    fn weigh(&mut self, tile: Crop, [sx, sy]: [u32; 2], sums: &mut [Box<[f64]>; 3], is_first: bool) {
+        let (across, down) = (self.taps.of(sx), self.taps.of(sy));
+        let (width, height) = (tile.width as usize, tile.height as usize);
+        let columns = width + across.weights.len() - 1;
+        for (light, sums) in self.light.iter_mut().zip(sums) {
+            for row in light.chunks_exact_mut(columns) {
+                for x in 0..width {
+                    // What lies before isn't needed any more.
+                    row[x] = row[x..].iter().zip(&across.weights).fold(0.0, |sum, (l, w)| sum + l * w);
+                }
+            }
+            for y in 0..height {
+                for x in 0..width {
+                    let column = light[y * columns + x..].iter().step_by(columns);
+                    let seen = column.zip(&down.weights).fold(0.0, |sum, (l, w)| sum + l * w);
+                    let sum = &mut sums[y * width + x];
+                    *sum = if is_first { 0.0 } else { *sum } + seen;
+                }
+            }
+            light.clear();
         }
     }
 }
