@@ -29,6 +29,7 @@ pub mod frame;
 mod gathered;
 mod graft;
 mod highlight;
+mod laid_out;
 mod light;
 pub mod material;
 mod nearest;
