@@ -7,7 +7,7 @@ use rtdsl::math::best::{InLanes, in_widest_lanes, in_widest_lanes_of_f32};
 use rtdsl::math::hash::KeyedHash;
 use rtdsl::math::{Affine, Elem, Lane, Mask, Real};
 use rtdsl::render::bounds::Bounds;
-use rtdsl::render::bvh::{Bvh, Leaves, Spread};
+use rtdsl::render::bvh::{Bvh, Company, Leaves, Spread};
 use rtdsl::render::frame::Frame;
 use rtdsl::render::shape::primitive::Tables;
 use rtdsl::render::shape::{self, Kind, Primitive, Visit};
@@ -339,8 +339,8 @@ fn rate(what: &str, scene: &Scene, tree: &Bvh, rays: &[Ray]) {
     }
 }
 
-/// Builds the tree with one thread and with two. All primitives from `batched_from` on may share leaves.
-fn build(what: &str, boxes: &[(u32, Bounds)], batched_from: u32) -> Bvh {
+/// Builds the tree with one thread and with two.
+fn build(what: &str, boxes: &[(u32, Bounds)], company: Company) -> Bvh {
     let never = std::sync::atomic::AtomicBool::new(false);
     let mut tree = Bvh::default();
     for threads in [1, 2] {
@@ -349,7 +349,7 @@ fn build(what: &str, boxes: &[(u32, Bounds)], batched_from: u32) -> Bvh {
         for _ in 0..5 {
             let boxes = boxes.to_vec();
             let start = Instant::now();
-            tree = pool.install(|| Bvh::build_unless(boxes, batched_from, &never)).unwrap_or_default();
+            tree = pool.install(|| Bvh::build_unless(boxes, |_| company, &never)).unwrap_or_default();
             seconds.push(start.elapsed().as_secs_f64());
         }
         println!("{what}: {:.1} ms to build, {threads} threads", median(seconds) * 1e3);
@@ -375,7 +375,7 @@ fn mesh() {
             t_max: f64::INFINITY,
         })
         .collect();
-    let tree = build(&format!("mesh of {} triangles", mesh.faces.len()), &scene.boxes, 0);
+    let tree = build(&format!("mesh of {} triangles", mesh.faces.len()), &scene.boxes, Company::Triangles);
     rate("camera rays", &scene, &tree, &all);
     rate("random rays", &scene, &tree, &lots);
 }
@@ -383,7 +383,7 @@ fn mesh() {
 fn balls() {
     for n in [1_000, 10_000, 100_000, 1_000_000] {
         let scene = Scene::balls(n);
-        let tree = build(&format!("{n} balls"), &scene.boxes, u32::MAX);
+        let tree = build(&format!("{n} balls"), &scene.boxes, Company::Balls);
         rate("camera rays", &scene, &tree, &camera_rays([0.0, 12.0, 40.0], 0.25));
     }
 }

@@ -32,8 +32,9 @@ enum Output {
 pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let start = Instant::now();
     let (output, format) = output(args)?;
-    let evaluated = load(&request(&args.scene.file, &args.scene.set, &args.scene.allow_read)?, args.quiet)?;
+    let mut evaluated = load(&request(&args.scene.file, &args.scene.set, &args.scene.allow_read)?, args.quiet)?;
     let (camera, mut options) = look(&evaluated, &args.view)?;
+    let camera = camera.clone();
     options.crop = checked_crop(args.crop, &options)?;
     options.threads = args.threads.map(|n| n as usize);
     args.accuracy.apply(&mut options, format, args.view.precision == Some(Precision::F32))?;
@@ -44,13 +45,17 @@ pub fn run(args: &RenderArgs) -> Result<Exit, Stop> {
     let maps = maps(args, &evaluated, &options)?;
 
     let world_start = Instant::now();
-    let world = World::build(&evaluated.scene, camera);
+    let world = match options.precision {
+        Precision::F64 => World::build_of(&mut evaluated.scene, &camera),
+        // What doesn't fit is shown in the text.
+        Precision::F32 => World::build(&evaluated.scene, &camera),
+    };
     fits(&world, &evaluated, &options)?;
     let world_seconds = world_start.elapsed().as_secs_f64();
 
     let render_start = Instant::now();
     let part = options.crop_or_all();
-    let recipe = recipe_of(&evaluated, &options, camera, None);
+    let recipe = recipe_of(&evaluated, &options, &camera, None);
     let bar = Bar::new(part.width as u64 * part.height as u64, args.quiet);
     let make = Make { world: &world, options: &options, bar: &bar, recipe: &recipe, is_hashed: args.stats.is_some() };
     let Some(made) = make.picture(format).map_err(|e| Stop::system("the picture can't be encoded", e))? else {

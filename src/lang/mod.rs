@@ -169,9 +169,13 @@ fn run(request: &Request, limits: Limits, store: &mut Store, cancel: &AtomicBool
             (name.clone(), SetValue { raw: raw.clone(), span: *span, node })
         })
         .collect::<HashMap<_, _>>();
+    let mut build = Build::new(limits, cancel);
+    // Most of the statements that are like others make a node each, and room that grows step by step leaves holes as large.
+    let likes = loader.modules.iter().map(|m| m.parsed.likes.len()).sum::<usize>();
+    build.scene.nodes.reserve(likes.min(limits.objects));
     let mut machine = Machine {
         program: &program,
-        build: Build::new(limits, cancel),
+        build,
         limits,
         globals: vec![Value::Unset; program.globals as usize],
         stack: Vec::new(),

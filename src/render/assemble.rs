@@ -3,14 +3,14 @@
 //! Shapes are placed twice: once for what they are numbered by, and again, in the order of their numbers, for good. What a
 //! shape's place is made of is far larger than what is kept of it, and placing is quicker than moving that through memory.
 
-use super::ball::Ball;
 use super::bounds::Bounds;
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
-use super::census::{PrimitiveKey, same_geometry, surfaces_renumbered};
+use super::census::PrimitiveKey;
 use super::confine::is_extreme;
 use super::digest::{LengthKey, MaterialDigest, material_digests};
 use super::frame::{Axes, Frame, LinearMap};
+use super::laid_out::{LaidOut, ball_radius};
 use super::material::MaterialCompiler;
 use super::pattern::PatternTable;
 use super::place::{Form, Placed, parts, world_bounds};
@@ -44,7 +44,19 @@ struct Piece {
 impl World {
     /// Prepares `scene` as seen by `camera`.
     pub fn build(scene: &Scene, camera: &Camera) -> World {
-        match World::assemble(scene, camera, None, false, &AtomicBool::new(false)) {
+        let built = World::lay_out(scene, camera, false, &NEVER).and_then(|laid_out| laid_out.grow(None, &NEVER));
+        match built {
+            Some((world, _)) => world,
+            None => unreachable!("nothing cancels it"),
+        }
+    }
+
+    /// As [`build`](World::build), for those who need the scene's shapes for nothing else: they are let go of as soon as they have
+    /// their places, for they take as much memory as the world does.
+    pub fn build_of(scene: &mut Scene, camera: &Camera) -> World {
+        let laid_out = World::lay_out(scene, camera, false, &NEVER);
+        (scene.nodes, scene.roots) = (Vec::new(), Vec::new());
+        match laid_out.and_then(|laid_out| laid_out.grow(None, &NEVER)) {
             Some((world, _)) => world,
             None => unreachable!("nothing cancels it"),
         }
@@ -58,17 +70,11 @@ impl World {
         before: Option<(&World, &[PrimitiveKey])>,
         cancel: &AtomicBool,
     ) -> Option<(World, Vec<PrimitiveKey>)> {
-        World::assemble(scene, camera, before, true, cancel)
+        World::lay_out(scene, camera, true, cancel)?.grow(before, cancel)
     }
 
-    /// The keys are none unless they are `wanted`.
-    fn assemble(
-        scene: &Scene,
-        camera: &Camera,
-        before: Option<(&World, &[PrimitiveKey])>,
-        wanted: bool,
-        cancel: &AtomicBool,
-    ) -> Option<(World, Vec<PrimitiveKey>)> {
+    /// All but the tree and what is found by it. The keys are none unless they are `wanted`.
+    fn lay_out(scene: &Scene, camera: &Camera, wanted: bool, cancel: &AtomicBool) -> Option<LaidOut> {
         let (standing, lights) = Standing::visit(scene, camera, cancel)?;
         let mut world = World {
             primitives: Vec::new(),
@@ -95,19 +101,8 @@ impl World {
         let digests = material_digests(scene);
         let numbers = world.compile_materials(&standing, &digests);
         let (order, keys) = world.in_order(&standing, &digests, &numbers, wanted, cancel)?;
-        let bounded = world.lay_out(&standing, &order, &numbers, cancel)?;
-        drop((order, standing));
-        world.has_rings = world.primitives.iter().any(|p| matches!(p.kind, Kind::Ring(_)));
-        world.balls = world.primitives.iter().map(|p| Ball::around(p, &world.maps)).collect();
-        // Boxes are relative to the camera's place.
-        let before = before.filter(|(old, _)| old.eye == world.eye);
-        world.bvh = match before.and_then(|b| grafted(b, (&world, &keys), &bounded)) {
-            Some(bvh) => bvh,
-            None => Bvh::build_unless(bounded, world.owners.primitives, cancel)?,
-        };
-        world.find_touched_surfaces();
-        world.find_flocks();
-        Some((world, keys))
+        let bounded = world.fill(&standing, &order, &numbers, cancel)?;
+        Some(LaidOut { world, keys, bounded })
     }
 
     /// Compiles the materials that shapes wear; gives each scene material its number here. They are compiled in the order of
@@ -183,8 +178,8 @@ impl World {
         Some((order.into_iter().map(|o| all[o.1 as usize]).collect(), keys))
     }
 
-    /// Fills the tables; gives the boxes of what has bounds.
-    fn lay_out(
+    /// Fills the tables; gives the boxes of what has bounds and is no ball.
+    fn fill(
         &mut self,
         standing: &Standing<'_>,
         order: &[Part],
@@ -193,7 +188,7 @@ impl World {
     ) -> Option<Vec<(u32, Bounds)>> {
         self.primitives.reserve_exact(order.len());
         self.origins.reserve_exact(order.len());
-        let mut bounded = Vec::with_capacity(order.len());
+        let mut bounded = Vec::new();
         let mut meshes = Vec::new();
         for stretch in order.chunks(AT_ONCE * PIECES) {
             if cancel.load(Relaxed) {
@@ -265,13 +260,15 @@ impl World {
     }
 }
 
+/// For what nothing cancels.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 impl Piece {
     /// Lays out `parts`, of which the first has the number `first`.
     fn new(world: &World, standing: &Standing<'_>, (parts, first): (&[Part], u32), numbers: &[u32]) -> Piece {
         let mut piece = Piece {
             primitives: Vec::with_capacity(parts.len()),
             origins: Vec::with_capacity(parts.len()),
-            bounded: Vec::with_capacity(parts.len()),
             ..Piece::default()
         };
         for (part, id) in parts.iter().zip(first..) {
@@ -315,7 +312,9 @@ impl Piece {
                 if is_extreme(extent[1], &placed.world_from_local) {
                     self.extremes.push((id, bounds));
                 }
-                self.bounded.push((id, bounds));
+                if ball_radius(&kind, &frame).is_none() {
+                    self.bounded.push((id, bounds));
+                }
             }
             None if matches!(kind, Kind::Plane) => {
                 let n = frame.normal_to_world(&self.maps, [0.0, 1.0, 0.0]);
@@ -329,17 +328,4 @@ impl Piece {
         }
         self.primitives.push(Primitive { kind, frame, material, space });
     }
-}
-
-/// The old world's tree, with what became of its primitives.
-fn grafted(
-    (old, old_keys): (&World, &[PrimitiveKey]),
-    (new, keys): (&World, &[PrimitiveKey]),
-    bounded: &[(u32, Bounds)],
-) -> Option<Bvh> {
-    let renumbered = same_geometry(old_keys, keys);
-    let mut is_new = vec![true; keys.len()];
-    renumbered.iter().filter(|&&id| id != u32::MAX).for_each(|&id| is_new[id as usize] = false);
-    let added = bounded.iter().filter(|b| is_new[new.owners.of(b.0) as usize]).copied().collect();
-    old.bvh.grafted(&surfaces_renumbered(renumbered, old, new), added)
 }

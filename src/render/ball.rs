@@ -48,11 +48,22 @@ pub struct Ball {
 
 impl Ball {
     /// The ball around `primitive`.
+    #[inline(always)]
     pub fn around(primitive: &Primitive, maps: &[LinearMap]) -> Ball {
-        let Frame { centre, centre_lo, .. } = primitive.frame;
+        let Frame { centre, centre_lo, axes } = primitive.frame;
         // What the centre is off by makes it larger: of two points far from the eye, but near each other, that is much of the
         // difference.
-        let off: f64 = centre_lo.iter().map(|x| x.abs()).sum();
+        let off = centre_lo[0].abs() + centre_lo[1].abs() + centre_lo[2].abs();
+        if let (Kind::Sphere(r), Axes::Cyclic(_)) = (&primitive.kind, axes) {
+            return Ball { centre, square: (r + off) * (r + off) };
+        }
+        Ball::around_other(primitive, maps, off)
+    }
+
+    /// The ball around what is none itself, and whose centre is off by so much.
+    #[inline(never)]
+    fn around_other(primitive: &Primitive, maps: &[LinearMap], off: f64) -> Ball {
+        let centre = primitive.frame.centre;
         let square = match radius_square(primitive, maps) {
             Some(square) if off > 0.0 => (square.sqrt() + off) * (square.sqrt() + off),
             Some(square) => square,

@@ -8,9 +8,9 @@ use crate::diag::Place;
 use crate::scene::{NodeId, Scene};
 
 impl World {
-    /// What the renderer can do, and which of it this scene requires, by the first text that does.
+    /// What the renderer can do, and which of it this scene requires, by the first text that does, where the scene still knows.
     pub fn features(&self, scene: &Scene) -> Vec<Feature> {
-        let node_place = |id: NodeId| scene.node(id).place.clone();
+        let node_place = |id: NodeId| scene.nodes.get(id.0 as usize).map(|node| node.place.clone());
         // The first in the text, not in our numbering.
         let first = |wanted: &dyn Fn(usize) -> bool| -> Option<usize> {
             (0..self.primitives.len()).filter(|&i| wanted(i)).min_by_key(|&i| self.origins[i].0)
@@ -19,18 +19,18 @@ impl World {
         let by_shape = |name, what: &str, wanted: &dyn Fn(&Kind) -> bool| {
             let at = first(&|i| wanted(&self.primitives[i].kind));
             let count = self.primitives.iter().filter(|p| wanted(&p.kind)).count();
-            feature(name, at.map(|i| node_place(self.origins[i].0)), count > 0, counted(count, "surface") + what)
+            feature(name, at.and_then(|i| node_place(self.origins[i].0)), count > 0, counted(count, "surface") + what)
         };
         let by_material = |name, detail: &str, wanted: &dyn Fn(&Surfacing) -> bool| {
             let at = first(&|i| wanted(surfacing(i)));
-            let place = at.map(|i| {
+            let place = at.and_then(|i| {
                 let (node, material) = self.origins[i];
-                scene.material(material).place.clone().unwrap_or_else(|| node_place(node))
+                scene.material(material).place.clone().or_else(|| node_place(node))
             });
             feature(name, place, at.is_some(), detail.to_owned())
         };
         let is_pattern = |s: Slot| matches!(s, Slot::Pattern(_));
-        let light = self.lights.iter().min_by_key(|l| l.node).map(|l| node_place(l.node));
+        let light = self.lights.iter().min_by_key(|l| l.node).and_then(|l| node_place(l.node));
         let lit = self.primitives.iter().any(|p| self.materials[p.material as usize].lit);
         let texels = self.patterns.textures.iter().map(|t| t.memory_bytes()).sum::<usize>();
         let linear = self.maps.len();

@@ -4,8 +4,8 @@
 //! The picture doesn't depend on the tree's shape, only its time does: so when too much was grafted, the tree is built anew.
 
 use super::bounds::Bounds;
-use super::bvh::Bvh;
 use super::bvh::node::{Box4, Child, Node};
+use super::bvh::{Bvh, Company, Item};
 use std::sync::atomic::AtomicBool;
 
 /// Most grafts, one upon the other: each makes the tree deeper by one.
@@ -19,9 +19,11 @@ impl Bvh {
     /// are gone; `added` are the new ones. `None` where it is better built anew.
     pub fn grafted(&self, renumbered: &[u32], added: Vec<(u32, Bounds)>) -> Option<Bvh> {
         let is_gone = |id: &u32| renumbered.get(*id as usize) == Some(&u32::MAX);
-        let gone = self.ids.iter().filter(|id| is_gone(id)).count();
+        let all =
+            || self.nodes.iter().flat_map(Node::children).filter(|c| c.1.is_leaf()).flat_map(|c| self.ids_of(c.1));
+        let (gone, count) = (all().filter(|id| is_gone(id)).count(), self.len());
         let changed = self.changed + gone + added.len();
-        if changed * MOST_CHANGED > self.ids.len() || (self.grafts >= MOST_GRAFTS && !added.is_empty()) {
+        if changed * MOST_CHANGED > count || (self.grafts >= MOST_GRAFTS && !added.is_empty()) {
             return None;
         }
         let mut tree = Bvh { changed, grafts: self.grafts, fit: self.fit, bounds: self.bounds, ..Bvh::default() };
@@ -34,7 +36,8 @@ impl Bvh {
         let kept = self.copy_kept(0, renumbered, &mut tree)?;
         tree.nodes[0].set(0, kept, Child::node(1));
         let bounds = added.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1));
-        let graft = Bvh::build_in(self.fit, bounds, added, u32::MAX, &AtomicBool::new(false))?;
+        let item = |(id, b): &(u32, Bounds)| Item::new(*id, self.fit.shrink(b), Company::Alone);
+        let graft = Bvh::build_in(self.fit, bounds, added.iter().map(item).collect(), &AtomicBool::new(false))?;
         let (second, ids) = (tree.nodes.len(), tree.ids.len());
         tree.nodes[0].set(1, graft.nodes.first()?.around(), Child::node(second));
         tree.nodes.extend(graft.nodes);
@@ -50,7 +53,14 @@ impl Bvh {
         let (place, mut left) = (to.nodes.len(), 0);
         to.nodes.push(Node::empty());
         for (slot, child) in node.children() {
-            let (kept, bounds) = if child.is_leaf() {
+            let (kept, bounds) = if child.is_swarm() {
+                let number = |id: u32| renumbered.get(id as usize).copied().unwrap_or(u32::MAX);
+                let is_kept = |(k, id): (usize, &u32)| ((number(*id) != u32::MAX) as u32) << k;
+                let kept: u32 = self.ids_of(child).iter().enumerate().map(is_kept).sum();
+                let Some(swarm) = self.swarms.get(child.first()).filter(|_| kept != 0) else { continue };
+                to.swarms.push(swarm.renumbered(kept, number));
+                (Child::swarm(to.swarms.len() - 1, kept.count_ones() as usize), node.box_of(slot))
+            } else if child.is_leaf() {
                 let first = to.ids.len();
                 let renumbered = self.ids_of(child).iter().filter_map(|id| renumbered.get(*id as usize));
                 to.ids.extend(renumbered.filter(|id| **id != u32::MAX));

@@ -63,7 +63,7 @@ impl<L: Lane> ShadowRays<'_, L> {
     /// looked at, for that may be anywhere in memory.
     #[inline(always)]
     fn pass_by(&self, world: &World, k: u32, open: L::Mask) -> bool {
-        match world.balls.get(k as usize) {
+        match world.ball(k) {
             Some(ball) => {
                 let here = self.source.same(L::splat(k as f64));
                 !(open & (here | !ball.passed_by::<L, false>((self.o, self.l)))).any()

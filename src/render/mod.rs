@@ -30,6 +30,7 @@ pub mod frame;
 mod gathered;
 mod graft;
 mod highlight;
+mod laid_out;
 mod lattice;
 mod light;
 mod marks;

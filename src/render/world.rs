@@ -27,7 +27,7 @@ const RING: u32 = 60;
 /// The scene as the tracer sees it.
 pub struct World {
     pub(super) primitives: Vec<Primitive>,
-    /// Around each of them.
+    /// Around each of them; none where most are in swarms. See [`World::ball`].
     pub(super) balls: Vec<Ball>,
     /// Whether any is a torus.
     pub(super) has_rings: bool,
@@ -167,6 +167,16 @@ impl World {
         Tables { maps: &self.maps, triangles: &self.triangles }
     }
 
+    /// The ball around primitive `id`; `None` for a triangle of a mesh.
+    #[inline(always)]
+    pub(super) fn ball(&self, id: u32) -> Option<Ball> {
+        if let Some(ball) = self.balls.get(id as usize) {
+            return Some(*ball);
+        }
+        let primitive = self.primitives.get(id as usize)?;
+        Some(Ball::around(primitive, &self.maps))
+    }
+
     /// The primitive that surface `id` belongs to.
     #[inline(always)]
     pub(super) fn primitive(&self, id: u32) -> &Primitive {
@@ -206,7 +216,7 @@ impl World {
         own: Option<Own<R>>,
         visit: &mut impl Visit<R>,
     ) {
-        if let Some(ball) = self.balls.get(id as usize) {
+        if let Some(ball) = self.ball(id) {
             let mut met = !ball.passed_by::<R, AT_EYE>((o, d));
             if let Some(own) = &own {
                 met = met | own.here; // what went in must come out, wherever rounding puts the start

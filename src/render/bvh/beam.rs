@@ -29,6 +29,8 @@ pub struct Beam {
     speed: f64,
     /// Roundings of t that two surfaces at the same place may differ by, relatively.
     tie: f64,
+    /// Whether it is one ray.
+    pub(super) is_one: bool,
 }
 
 /// Origins and directions of rays: smallest and largest, by axis.
@@ -71,6 +73,15 @@ impl Spread {
             o: [range(o[0], alive), range(o[1], alive), range(o[2], alive)],
             d: [range(d[0], alive), range(d[1], alive), range(d[2], alive)],
         }
+    }
+
+    /// Whether it is of one ray.
+    #[inline(always)]
+    fn is_one(&self) -> bool {
+        (0..3).all(
+            #[inline(always)]
+            |i| self.o[i][0] == self.o[i][1] && self.d[i][0] == self.d[i][1],
+        )
     }
 
     /// Whether the rays run so much alike that a box which the beam meets is met by most of them.
@@ -174,6 +185,7 @@ impl Beam {
             start,
             speed: fit.scale * size,
             tie: 8.0 * u + F64_SLACK,
+            is_one: spread.is_one(),
         };
         for i in 0..3 {
             let Some(way) = along[i].way else { continue };
@@ -298,6 +310,7 @@ impl<L: Lane> Beams<L> {
             start: self.start[k].to_f64(),
             speed: fit.scale * self.size[k].to_f64(),
             tie: 8.0 * L::UNIT_ROUNDOFF + F64_SLACK,
+            is_one: true,
         })
     }
 }

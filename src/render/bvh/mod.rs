@@ -1,13 +1,14 @@
 //! The tree of boxes over all bounded primitives: finds what a ray, a tile or a shaft can meet without looking at the rest.
 //!
-//! Eight children a node, boxes of `f32` rounded outwards (`node`), built by the surface area heuristic (`build`), and gone
-//! through nearest box first (`walk`). The same primitives give the same tree, and no picture depends on it: a box is
+//! Eight children a node, boxes of `f32` rounded outwards (`node`), balls by the eight in a leaf (`swarm`); built by the surface
+//! area heuristic (`build`), and gone through nearest box first (`walk`). The same primitives give the same tree, and no picture depends on it: a box is
 //! passed over only where every ray surely misses what is in it.
 
 mod beam;
 mod build;
 pub(super) mod node;
 mod split;
+mod swarm;
 mod together;
 mod walk;
 
@@ -20,9 +21,8 @@ use crate::math::{Elem, Lane, Mask};
 use beam::{Beam, Beams};
 pub use beam::{Rays, Spread, farthest};
 use node::{Child, Fit, Node};
-use rayon::prelude::*;
-use split::Item;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+pub use split::{Company, Item};
+use swarm::Swarm;
 use together::OneByOne;
 pub use walk::{Leaves, TEST};
 
@@ -31,8 +31,10 @@ pub use walk::{Leaves, TEST};
 pub struct Bvh {
     /// The first one is the root.
     pub(super) nodes: Vec<Node>,
-    /// Primitives in the order of the leaves.
+    /// Primitives in the order of the leaves, but for those in swarms.
     pub(super) ids: Vec<u32>,
+    /// Leaves of balls.
+    pub(super) swarms: Vec<Swarm>,
     pub(super) fit: Fit,
     /// Around all.
     pub(super) bounds: Bounds,
@@ -42,54 +44,21 @@ pub struct Bvh {
     pub(super) grafts: usize,
 }
 
-/// A tree smaller than this is built before another thread is awake.
-const SHARED: usize = 4096;
-
 impl Default for Bvh {
     fn default() -> Bvh {
-        Bvh { nodes: Vec::new(), ids: Vec::new(), fit: Fit::default(), bounds: Bounds::EMPTY, changed: 0, grafts: 0 }
+        Bvh {
+            nodes: Vec::new(),
+            ids: Vec::new(),
+            swarms: Vec::new(),
+            fit: Fit::default(),
+            bounds: Bounds::EMPTY,
+            changed: 0,
+            grafts: 0,
+        }
     }
 }
 
 impl Bvh {
-    /// Builds the tree over (primitive, box) pairs, one primitive a leaf.
-    pub fn build(leaves: Vec<(u32, Bounds)>) -> Bvh {
-        Bvh::build_unless(leaves, u32::MAX, &AtomicBool::new(false)).unwrap_or_default()
-    }
-
-    /// Builds the tree with up to eight primitives a leaf where all their numbers are `batched_from` or more: those are tested
-    /// as fast as their box, as eight triangles are that go into one register. `None` where `cancel` is set meanwhile.
-    pub fn build_unless(leaves: Vec<(u32, Bounds)>, batched_from: u32, cancel: &AtomicBool) -> Option<Bvh> {
-        let around = |leaves: &[(u32, Bounds)]| leaves.iter().fold(Bounds::EMPTY, |b, l| b.union(l.1));
-        let bounds = match leaves.len() < SHARED {
-            true => around(&leaves),
-            false => leaves.par_chunks(SHARED).map(around).reduce(|| Bounds::EMPTY, Bounds::union),
-        };
-        Bvh::build_in(Fit::new(&bounds), bounds, leaves, batched_from, cancel)
-    }
-
-    /// Builds the tree in given units.
-    pub(super) fn build_in(
-        fit: Fit,
-        bounds: Bounds,
-        leaves: Vec<(u32, Bounds)>,
-        batched_from: u32,
-        cancel: &AtomicBool,
-    ) -> Option<Bvh> {
-        if leaves.is_empty() {
-            return Some(Bvh::default());
-        }
-        let item = |(id, b): &(u32, Bounds)| Item::new(*id, fit.shrink(b));
-        let mut items: Vec<Item> = match leaves.len() < SHARED {
-            true => leaves.iter().map(item).collect(),
-            false => leaves.par_iter().map(item).collect(),
-        };
-        drop(leaves);
-        let nodes = build::nodes_over(&mut items, batched_from, cancel);
-        let ids = items.iter().map(Item::id).collect();
-        (!cancel.load(Relaxed)).then_some(Bvh { nodes, ids, fit, bounds, changed: 0, grafts: 0 })
-    }
-
     /// Every primitive with a box that surely holds it: that of its leaf, in the order of the leaves.
     pub fn leaves(&self) -> impl Iterator<Item = (u32, Bounds)> {
         let slots = self.nodes.iter().flat_map(|n| n.children().map(move |(slot, child)| (n, slot, child)));
@@ -99,24 +68,35 @@ impl Bvh {
         })
     }
 
+    /// Whether balls share leaves.
+    pub fn has_swarms(&self) -> bool {
+        !self.swarms.is_empty()
+    }
+
     /// Number of primitives.
     pub fn len(&self) -> usize {
-        self.ids.len()
+        let leaves = self.nodes.iter().flat_map(Node::children).filter(|(_, child)| child.is_swarm());
+        self.ids.len() + leaves.map(|(_, leaf)| leaf.count()).sum::<usize>()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.ids.is_empty()
+        self.nodes.is_empty()
     }
 
     /// Bytes it occupies.
     pub fn memory_bytes(&self) -> usize {
-        self.nodes.len() * size_of::<Node>() + self.ids.len() * size_of::<u32>()
+        self.nodes.len() * size_of::<Node>()
+            + self.ids.len() * size_of::<u32>()
+            + self.swarms.len() * size_of::<Swarm>()
     }
 
     #[inline(always)]
     pub(super) fn ids_of(&self, leaf: Child) -> &[u32] {
-        self.ids.get(leaf.range()).unwrap_or_default()
+        match leaf.is_swarm() {
+            true => self.swarms.get(leaf.first()).map_or(&[][..], |swarm| &swarm.ids()[..leaf.count()]),
+            false => self.ids.get(leaf.range()).unwrap_or_default(),
+        }
     }
 
     /// Calls `found` for every primitive in whose leaf's box, and all boxes around it, `keep` sees something; stops when
@@ -150,7 +130,13 @@ impl Bvh {
                     }
                     continue;
                 }
-                for id in self.ids_of(child) {
+                let swarm = if child.is_swarm() { self.swarms.get(child.first()) } else { None };
+                for (k, id) in self.ids_of(child).iter().enumerate() {
+                    if let Some(swarm) = swarm
+                        && !keep(&self.fit.grow(&swarm.box_of(k)))
+                    {
+                        continue;
+                    }
                     if !found(*id) {
                         return true;
                     }
@@ -200,7 +186,7 @@ impl Bvh {
             return 0;
         }
         match Beam::new(&self.fit, &self.bounds, spread, u) {
-            Some(beam) => walk::walk::<W>(&self.nodes, &self.ids, &beam, t_max, leaves),
+            Some(beam) => walk::walk::<W>(self, &beam, t_max, leaves),
             None => 0,
         }
     }
@@ -229,7 +215,7 @@ impl Bvh {
             }
         };
         match beam {
-            Some(beam) => walk::walk::<L::Boxes>(&self.nodes, &self.ids, &beam, t_max, leaves),
+            Some(beam) => walk::walk::<L::Boxes>(self, &beam, t_max, leaves),
             None => 0,
         }
     }
@@ -240,6 +226,7 @@ mod tests {
     use super::*;
     use crate::math::hash::KeyedHash;
     use crate::render::bounds::{larger, smaller};
+    use std::sync::atomic::AtomicBool;
 
     fn random(i: u64, k: u64) -> f64 {
         KeyedHash::new().with(i).with(k).unit()
@@ -257,6 +244,11 @@ mod tests {
             Bounds { lo: [0, 1, 2].map(|k| c[k] - half[k]), hi: [0, 1, 2].map(|k| c[k] + half[k]) }
         };
         (0..n).map(|i| (i as u32, one(i))).collect()
+    }
+
+    /// Those from number `first` on are triangles.
+    fn triangles(first: u32) -> impl Fn(u32) -> Company + Sync {
+        move |id| if id < first { Company::Alone } else { Company::Triangles }
     }
 
     /// Where a ray enters a box, in plain arithmetic, if it surely meets it: not just by rounding.
@@ -293,7 +285,8 @@ mod tests {
             for n in [1, 2, 7, 60, 600, 5000] {
                 let all = boxes(n, size, away);
                 for batched_from in [u32::MAX, n as u32 / 2, 0] {
-                    let tree = Bvh::build_unless(all.clone(), batched_from, &AtomicBool::new(false)).expect("built");
+                    let tree = Bvh::build_unless(all.clone(), triangles(batched_from), &AtomicBool::new(false));
+                    let tree = tree.expect("built");
                     assert_eq!(tree.len(), all.len());
                     for i in 0..200 {
                         let (o, d) = ray(i + n, size, away);
@@ -347,7 +340,7 @@ mod tests {
         let all = boxes(30_000, 10.0, 0.0);
         let built = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            format!("{:?}", pool.install(|| Bvh::build_unless(all.clone(), 9_000, &AtomicBool::new(false))))
+            format!("{:?}", pool.install(|| Bvh::build_unless(all.clone(), triangles(9_000), &AtomicBool::new(false))))
         };
         assert!(built(1) == built(2) && built(1) == built(5));
     }
@@ -367,6 +360,6 @@ mod tests {
 
     #[test]
     fn a_cancelled_build_gives_no_tree() {
-        assert!(Bvh::build_unless(boxes(50_000, 1.0, 0.0), u32::MAX, &AtomicBool::new(true)).is_none());
+        assert!(Bvh::build_unless(boxes(50_000, 1.0, 0.0), triangles(0), &AtomicBool::new(true)).is_none());
     }
 }

@@ -24,7 +24,7 @@ const UPPER: usize = 3;
 /// Row that tells what the children are.
 const CHILD: usize = 6;
 
-/// What a slot of a node refers to: another node, or up to [`Child::MOST`] primitives in a row.
+/// What a slot of a node refers to: another node, or up to [`Child::MOST`] primitives, in a row or in a [`Swarm`](super::swarm::Swarm).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(pub u32);
 
@@ -35,7 +35,8 @@ impl Child {
     pub const NONE: Child = Child(Child::LEAF);
 
     const LEAF: u32 = 1 << 31;
-    const COUNT: u32 = 28;
+    const SWARM: u32 = 1 << 30;
+    const COUNT: u32 = 27;
     const FIRST: u32 = (1 << Child::COUNT) - 1;
 
     /// Node number `at`.
@@ -45,6 +46,10 @@ impl Child {
     /// `count` primitives, at least one, from `first` on in the order of the leaves.
     pub fn leaf(first: usize, count: usize) -> Child {
         Child(Child::LEAF | (count as u32 - 1) << Child::COUNT | first as u32 & Child::FIRST)
+    }
+    /// The first `count` balls, at least one, of swarm number `at`.
+    pub fn swarm(at: usize, count: usize) -> Child {
+        Child(Child::leaf(at, count).0 | Child::SWARM)
     }
     /// Whether it is a leaf.
     #[inline(always)]
@@ -56,11 +61,25 @@ impl Child {
     pub fn at(self) -> usize {
         self.0 as usize
     }
+    /// Whether it is a leaf that is a swarm.
+    #[inline(always)]
+    pub fn is_swarm(self) -> bool {
+        self.0 >= Child::LEAF | Child::SWARM
+    }
+    /// How many primitives the leaf has.
+    #[inline(always)]
+    pub fn count(self) -> usize {
+        (self.0 >> Child::COUNT & 7) as usize + 1
+    }
+    /// Where the leaf's primitives stand in the order of the leaves, or the number of its swarm.
+    #[inline(always)]
+    pub fn first(self) -> usize {
+        (self.0 & Child::FIRST) as usize
+    }
     /// Where the leaf's primitives stand in the order of the leaves.
     #[inline(always)]
     pub fn range(self) -> std::ops::Range<usize> {
-        let first = (self.0 & Child::FIRST) as usize;
-        first..first + (self.0 >> Child::COUNT & 7) as usize + 1
+        self.first()..self.first() + self.count()
     }
 }
 
@@ -108,7 +127,7 @@ impl Node {
             self.rows[i][slot] = b.lo[i];
             self.rows[UPPER + i][slot] = b.hi[i];
         }
-        self.rows[CHILD][slot] = f32::from_bits(child.0);
+        self.refer(slot, child);
     }
 
     /// The box of a slot.
@@ -135,11 +154,16 @@ impl Node {
             }
             let child = self.child(slot);
             let moved = match child.is_leaf() {
-                true => Child::leaf(child.range().start + leaves, child.range().len()),
+                true => Child(child.0 + leaves as u32),
                 false => Child::node(child.at() + nodes),
             };
-            self.rows[CHILD][slot] = f32::from_bits(moved.0);
+            self.refer(slot, moved);
         }
+    }
+
+    /// Has a slot refer to something else.
+    pub fn refer(&mut self, slot: usize, child: Child) {
+        self.rows[CHILD][slot] = f32::from_bits(child.0);
     }
 
     /// Around all children.
@@ -152,7 +176,8 @@ impl Node {
         (0..WIDE).filter(|&slot| self.is_used(slot)).map(|slot| (slot, self.child(slot)))
     }
 
-    fn is_used(&self, slot: usize) -> bool {
+    /// Whether a slot is used.
+    pub fn is_used(&self, slot: usize) -> bool {
         self.rows[0][slot] < f32::INFINITY
     }
 

@@ -3,8 +3,19 @@
 use super::build::around;
 use super::node::Box4;
 
-/// A primitive to be sorted into the tree: its box, and its number in the bits of the fourth lower coordinate, so that both fill
-/// two registers.
+/// With what else a primitive may share a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Company {
+    /// Nothing.
+    Alone,
+    /// Other triangles: several are tested as fast as their box.
+    Triangles,
+    /// Other balls, whose boxes are told by them.
+    Balls,
+}
+
+/// A primitive to be sorted into the tree: its box, its number in the bits of the fourth lower coordinate, and its company in those
+/// of the upper, so that all fill two registers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct Item {
@@ -14,9 +25,13 @@ pub struct Item {
 
 impl Item {
     /// Primitive `id` with its box.
-    pub fn new(id: u32, mut bounds: Box4) -> Item {
-        (bounds.lo[3], bounds.hi[3]) = (f32::from_bits(id), 0.0);
+    pub fn new(id: u32, mut bounds: Box4, company: Company) -> Item {
+        (bounds.lo[3], bounds.hi[3]) = (f32::from_bits(id), f32::from_bits(company as u32));
         Item { bounds }
+    }
+    /// With what it may share a leaf.
+    pub fn is_of(&self, company: Company) -> bool {
+        self.bounds.hi[3].to_bits() == company as u32
     }
     /// The primitive's number.
     pub fn id(&self) -> u32 {
@@ -107,15 +122,16 @@ impl<const BINS: usize> Bins<BINS> {
     }
 }
 
-/// Parts `items`, at least two, by the cheapest of the binned planes, or halves them where no plane parts them.
-pub fn split(items: &mut [Item], part: &Part) -> (Part, Part) {
+/// Parts `items`, at least two, by the cheapest of the binned planes, or halves them where no plane parts them. Up to `most` cost as
+/// much as one: so leaves get full.
+pub fn split(items: &mut [Item], part: &Part, most: usize) -> (Part, Part) {
     match items.len() <= FEW {
-        true => split_over::<FEW_BINS>(items, part),
-        false => split_over::<BINS>(items, part),
+        true => split_over::<FEW_BINS>(items, part, most as u32),
+        false => split_over::<BINS>(items, part, most as u32),
     }
 }
 
-fn split_over<const BINS: usize>(items: &mut [Item], part: &Part) -> (Part, Part) {
+fn split_over<const BINS: usize>(items: &mut [Item], part: &Part, most: u32) -> (Part, Part) {
     let bins = Bins::<BINS>::new(&part.centres);
     let mut boxes = [[Box4::EMPTY; BINS]; 3];
     let mut counts = [[0u32; BINS]; 3];
@@ -136,12 +152,12 @@ fn split_over<const BINS: usize>(items: &mut [Item], part: &Part) -> (Part, Part
         let (mut b, mut n) = (Box4::EMPTY, 0);
         for k in (1..BINS).rev() {
             (b, n) = (b.union(boxes[k]), n + counts[k]);
-            right[k] = if n > 0 { half_area(&b, unit) * n as f32 } else { f32::INFINITY };
+            right[k] = if n > 0 { half_area(&b, unit) * n.div_ceil(most) as f32 } else { f32::INFINITY };
         }
         let (mut b, mut n) = (Box4::EMPTY, 0);
         for k in 1..BINS {
             (b, n) = (b.union(boxes[k - 1]), n + counts[k - 1]);
-            let cost = half_area(&b, unit) * n as f32 + right[k];
+            let cost = half_area(&b, unit) * n.div_ceil(most) as f32 + right[k];
             if n > 0 && cost < f32::INFINITY && best.is_none_or(|x| cost < x.0) {
                 best = Some((cost, axis, k));
             }

@@ -1,7 +1,9 @@
 //! The way of rays through the tree, nearest box first.
 
+use super::Bvh;
 use super::beam::Beam;
-use super::node::{Box4, Child, Node};
+use super::node::{Box4, Child};
+use super::swarm::Line;
 use crate::math::Lane;
 use std::mem::MaybeUninit;
 
@@ -19,12 +21,20 @@ pub struct Registers<W> {
     pub(super) near_inverse: [W; 3],
     pub(super) far_from: [W; 3],
     pub(super) far_inverse: [W; 3],
+    /// The ray, where it is only one.
+    pub(super) line: Option<Line<W>>,
 }
 
 impl<W: Lane<Elem = f32>> Registers<W> {
     #[inline(always)]
-    fn new(beam: &Beam) -> Self {
+    fn new(beam: &Beam, has_swarms: bool) -> Self {
+        // No `bool::then`: its closure may be compiled without the lanes' instructions.
+        let mut line = None;
+        if has_swarms && beam.is_one {
+            line = Some(Line::between([beam.near_from, beam.far_from], [beam.near_inverse, beam.far_inverse]));
+        }
         Registers {
+            line,
             near_row: beam.near_row,
             far_row: beam.far_row,
             near_from: splat3(beam.near_from),
@@ -127,8 +137,7 @@ fn entry(near: f32, child: Child) -> u64 {
 /// tests.
 #[inline(always)]
 pub fn walk<W: Lane<Elem = f32>>(
-    nodes: &[Node],
-    ids: &[u32],
+    Bvh { nodes, ids, swarms, .. }: &Bvh,
     beam: &Beam,
     t_max: f64,
     leaves: &mut impl Leaves,
@@ -136,13 +145,44 @@ pub fn walk<W: Lane<Elem = f32>>(
     let mut cost = SETUP;
     let mut stack = Stack::new();
     let mut child = Child::node(0);
-    let registers = Registers::<W>::new(beam);
+    let registers = Registers::<W>::new(beam, !swarms.is_empty());
     let mut t_max = beam.reach(t_max);
     loop {
         if child.is_leaf() {
-            let ids = ids.get(child.range()).unwrap_or_default();
-            cost = cost.saturating_add(leaves.cost(ids));
-            t_max = beam.reach(leaves.test(ids));
+            // All primitives of a plain leaf are tested at once, and of a swarm those that are met, one by one: from one place of the
+            // code, for kernels are large.
+            let swarm = if child.is_swarm() { swarms.get(child.first()) } else { None };
+            let (mut met, ids) = match swarm {
+                Some(swarm) => {
+                    let met = swarm.meet(&registers, t_max) & ((2 << (child.count() - 1)) - 1);
+                    cost = cost.saturating_add(1 + leaves.cost_of_boxes(met));
+                    (met, &swarm.ids()[..])
+                }
+                None => (1, ids.get(child.range()).unwrap_or_default()),
+            };
+            while met != 0 {
+                let k = met.trailing_zeros() as usize & 7;
+                met &= met - 1;
+                let mut tested = ids;
+                if let Some(swarm) = swarm {
+                    if !leaves.may_meet(
+                        #[inline(always)]
+                        || swarm.box_of(k),
+                    ) {
+                        continue;
+                    }
+                    tested = &ids[k..=k];
+                }
+                cost = cost.saturating_add(leaves.cost(tested));
+                if cost > leaves.most() {
+                    return cost;
+                }
+                let t = leaves.test(tested);
+                t_max = beam.reach(t);
+                if !(t > 0.0) {
+                    break;
+                }
+            }
         } else if let Some(node) = nodes.get(child.at()) {
             let (near, children, mut met) = node.meet(&registers, t_max);
             cost = cost.saturating_add(1 + leaves.cost_of_boxes(met));
