@@ -58,6 +58,7 @@ checks! {
     intervals,
     energy,
     coverage,
+    filtered,
     powers,
     scales,
     moves,

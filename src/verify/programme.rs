@@ -16,6 +16,7 @@ pub fn programme() -> Vec<Check> {
         enclosure::CHECK,
         energy::CHECK,
         coverage::CHECK,
+        coverage::FILTERED,
     ]
 }
 

@@ -19,7 +19,7 @@ use std::io::{self, Write};
 use std::time::Instant;
 
 /// The checks of `--coverage`.
-const COVERAGE: [&str; 2] = ["coverage", "stated"];
+const COVERAGE: [&str; 3] = ["coverage", "filtered", "stated"];
 
 /// A check of either kind.
 #[derive(Clone, Copy)]

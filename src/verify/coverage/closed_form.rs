@@ -6,7 +6,7 @@ use super::kept::Kept;
 use crate::math::fun;
 use crate::render::certify::{Pixel, Target, certify, code};
 use crate::render::{Options, World};
-use crate::scene::{AntiAliasing, Camera, Color, Pattern, PatternId, PatternKind, Projection, Shape};
+use crate::scene::{AntiAliasing, Camera, Color, Pattern, PatternId, PatternKind, PixelFilter, Projection, Shape};
 use crate::verify::draw::Draw;
 use crate::verify::stage::{Stage, Surface};
 use crate::verify::{Bound, Check, Figure, Outcome, Size};
@@ -24,7 +24,7 @@ pub const CHECK: Check = Check {
 const SIDE: u32 = 12;
 
 /// A picture and its truth.
-struct Known {
+pub(super) struct Known {
     stage: Stage,
     /// The linear value of each pixel, row by row.
     truth: Vec<f64>,
@@ -58,14 +58,14 @@ fn run(size: Size) -> Outcome {
     for Ask { what, target } in asks() {
         // Samples alone take about a hundred times as long.
         let seeds = if target.certificates { seeds } else { seeds / 10 };
-        let (kept, first) = tried(seeds, &target);
+        let (kept, first) = tried(seeds, &target, PixelFilter::Box, &KINDS);
         outcome.cases += kept.cases();
         outcome.figures.extend(kept.figures(what, target.confidence));
         outcome.first_failure = outcome.first_failure.or(first);
     }
     // The negative control: bounds of which a tenth is believed have to be found out.
     let weakened = Target { believed: 0.1, ..Target::new(4.0) };
-    let (kept, _) = tried(seeds, &weakened);
+    let (kept, _) = tried(seeds, &weakened, PixelFilter::Box, &KINDS);
     outcome.cases += kept.cases();
     let text = "negative control, bounds made ten times narrower: broken";
     outcome.figures.push(Figure::new(text, kept.broken() as f64, "", Bound::AtLeast(1.0)));
@@ -73,17 +73,18 @@ fn run(size: Size) -> Outcome {
 }
 
 /// Pictures of so many seeds, each of every kind, brought to `target`; and the first pixel that breaks its word.
-fn tried(seeds: u64, target: &Target) -> (Kept, Option<String>) {
+pub(super) fn tried(seeds: u64, target: &Target, filter: PixelFilter, kinds: &[Kind]) -> (Kept, Option<String>) {
     let one = |seed: u64| {
         let mut kept = Kept::default();
         let mut first = None;
-        for (kind, make) in KINDS {
+        for (kind, make) in kinds {
             let known = make(&mut Draw::new(kind, seed));
             let world = World::build(&known.stage.scene, &known.stage.scene.cameras[0]);
             let options = Options {
                 width: SIDE,
                 height: SIDE,
                 aa: AntiAliasing::Off,
+                filter,
                 threads: Some(1),
                 ..Options::from_settings(&known.stage.scene.settings)
             };
@@ -110,20 +111,21 @@ pub(super) fn off(pixel: &Pixel, truth: f64, quantum: f64) -> f64 {
     pixel.value.iter().map(|&v| (written(v) - code(truth)).abs()).fold(0.0, |m, e| if e > m { e } else { m })
 }
 
-type Kind = (&'static str, fn(&mut Draw) -> Known);
+/// A kind of pictures, and one of them by lot.
+pub(super) type Kind = (&'static str, fn(&mut Draw) -> Known);
 
 const KINDS: [Kind; 5] =
     [("edges", edge), ("discs", ball), ("needles", needles), ("dust", dust), ("checkers", checker)];
 
 /// Two grays, far enough apart to see a difference between them.
-fn grays(draw: &mut Draw) -> [f64; 2] {
+pub(super) fn grays(draw: &mut Draw) -> [f64; 2] {
     let dark = draw.between(0.0, 0.3);
     let bright = draw.between(0.4, 1.0);
     if draw.once_in(2) { [dark, bright] } else { [bright, dark] }
 }
 
 /// Shapes of gray `[1]` before gray `[0]`; `covered` is the area of them in a square.
-fn before(grays: [f64; 2], shapes: Vec<Shape>, covered: impl Fn(Square) -> f64) -> Known {
+pub(super) fn before(grays: [f64; 2], shapes: Vec<Shape>, covered: impl Fn(Square) -> f64) -> Known {
     let mut stage = Stage::new();
     stage.scene.background = Color::linear_gray(grays[0]);
     stage.scene.ambient = Color::WHITE;
@@ -255,7 +257,7 @@ fn odd_share(pixel: &[[f64; 2]; 4], size: f64) -> f64 {
 }
 
 /// Anywhere in the picture.
-fn random_point(draw: &mut Draw) -> [f64; 2] {
+pub(super) fn random_point(draw: &mut Draw) -> [f64; 2] {
     let half = 0.5 * SIDE as f64;
     [draw.between(-half, half), draw.between(-half, half)]
 }

@@ -8,9 +8,11 @@
 mod binomial;
 mod closed_form;
 mod covered;
+mod filtered;
 mod kept;
 mod scenes;
 
 pub use binomial::lower_limit;
 pub use closed_form::CHECK;
+pub use filtered::CHECK as FILTERED;
 pub use scenes::CHECK as PICTURES;
