@@ -3,6 +3,7 @@
 //! Shapes are placed twice: once for what they are numbered by, and again, in the order of their numbers, for good. What a
 //! shape's place is made of is far larger than what is kept of it, and placing is quicker than moving that through memory.
 
+use super::ball::ball_radius;
 use super::bounds::Bounds;
 use super::bvh::Bvh;
 use super::camera::CameraFrame;
@@ -10,7 +11,7 @@ use super::census::PrimitiveKey;
 use super::confine::is_extreme;
 use super::digest::{LengthKey, MaterialDigest, material_digests};
 use super::frame::{Axes, Frame, LinearMap};
-use super::laid_out::{LaidOut, ball_radius};
+use super::laid_out::LaidOut;
 use super::material::MaterialCompiler;
 use super::pattern::PatternTable;
 use super::place::{Form, Placed, parts, world_bounds};
@@ -44,11 +45,7 @@ struct Piece {
 impl World {
     /// Prepares `scene` as seen by `camera`.
     pub fn build(scene: &Scene, camera: &Camera) -> World {
-        let built = World::lay_out(scene, camera, false, &NEVER).and_then(|laid_out| laid_out.grow(None, &NEVER));
-        match built {
-            Some((world, _)) => world,
-            None => unreachable!("nothing cancels it"),
-        }
+        grown(World::lay_out(scene, camera, false, &NEVER))
     }
 
     /// As [`build`](World::build), for those who need the scene's shapes for nothing else: they are let go of as soon as they have
@@ -56,10 +53,7 @@ impl World {
     pub fn build_of(scene: &mut Scene, camera: &Camera) -> World {
         let laid_out = World::lay_out(scene, camera, false, &NEVER);
         (scene.nodes, scene.roots) = (Vec::new(), Vec::new());
-        match laid_out.and_then(|laid_out| laid_out.grow(None, &NEVER)) {
-            Some((world, _)) => world,
-            None => unreachable!("nothing cancels it"),
-        }
+        grown(laid_out)
     }
 
     /// Prepares `scene` as seen by `camera`, and says what each primitive is known by; `None` where `cancel` was set
@@ -262,6 +256,14 @@ impl World {
 
 /// For what nothing cancels.
 static NEVER: AtomicBool = AtomicBool::new(false);
+
+/// The world that nothing has cancelled.
+fn grown(laid_out: Option<LaidOut>) -> World {
+    match laid_out.and_then(|laid_out| laid_out.grow(None, &NEVER)) {
+        Some((world, _)) => world,
+        None => unreachable!("nothing cancels it"),
+    }
+}
 
 impl Piece {
     /// Lays out `parts`, of which the first has the number `first`.

@@ -35,6 +35,15 @@ fn radius_square(primitive: &Primitive, maps: &[LinearMap]) -> Option<f64> {
     }
 }
 
+/// The radius of a shape that is a ball in the world too: a stretched one isn't.
+#[inline(always)]
+pub fn ball_radius(kind: &Kind, frame: &Frame) -> Option<f64> {
+    match (kind, frame.axes) {
+        (Kind::Sphere(r), Axes::Cyclic(_)) => Some(*r),
+        _ => None,
+    }
+}
+
 /// A ball that holds all of a primitive. These stand by themselves, for they are all that most rays ask of most primitives: half a
 /// cache line of the two or three that a primitive takes.
 #[derive(Clone, Copy, Debug)]
@@ -50,11 +59,11 @@ impl Ball {
     /// The ball around `primitive`.
     #[inline(always)]
     pub fn around(primitive: &Primitive, maps: &[LinearMap]) -> Ball {
-        let Frame { centre, centre_lo, axes } = primitive.frame;
+        let Frame { centre, centre_lo, .. } = primitive.frame;
         // What the centre is off by makes it larger: of two points far from the eye, but near each other, that is much of the
         // difference.
         let off = centre_lo[0].abs() + centre_lo[1].abs() + centre_lo[2].abs();
-        if let (Kind::Sphere(r), Axes::Cyclic(_)) = (&primitive.kind, axes) {
+        if let Some(r) = ball_radius(&primitive.kind, &primitive.frame) {
             return Ball { centre, square: (r + off) * (r + off) };
         }
         Ball::around_other(primitive, maps, off)

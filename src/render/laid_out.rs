@@ -1,10 +1,9 @@
 //! A world whose shapes have their places and numbers, before it has a tree: what is needed of the scene is then known.
 
-use super::ball::Ball;
+use super::ball::{Ball, ball_radius};
 use super::bounds::Bounds;
 use super::bvh::{Bvh, Company};
 use super::census::{PrimitiveKey, same_geometry, surfaces_renumbered};
-use super::frame::{Axes, Frame};
 use super::shape::{Kind, Primitive};
 use super::world::World;
 use std::sync::atomic::AtomicBool;
@@ -43,14 +42,6 @@ impl LaidOut {
         world.find_touched_surfaces();
         world.find_flocks();
         Some((world, keys))
-    }
-}
-
-/// The radius of a shape that is a ball in the world too: a stretched one isn't.
-pub fn ball_radius(kind: &Kind, frame: &Frame) -> Option<f64> {
-    match (kind, frame.axes) {
-        (Kind::Sphere(r), Axes::Cyclic(_)) => Some(*r),
-        _ => None,
     }
 }
 

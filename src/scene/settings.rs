@@ -61,16 +61,15 @@ pub enum PixelFilter {
 }
 
 impl PixelFilter {
-    /// All of them by their names in a scene.
-    pub const NAMED: [(&'static str, PixelFilter); 3] =
-        [("box", PixelFilter::Box), ("mitchell", PixelFilter::Mitchell), ("gauss", PixelFilter::Gauss)];
+    /// Every one.
+    pub const ALL: [PixelFilter; 3] = [PixelFilter::Box, PixelFilter::Mitchell, PixelFilter::Gauss];
 
     /// That of a name.
     pub fn named(name: &str) -> Option<PixelFilter> {
-        Self::NAMED.into_iter().find(|(n, _)| *n == name).map(|(_, filter)| filter)
+        Self::ALL.into_iter().find(|filter| filter.name() == name)
     }
 
-    /// Its name.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         match self {
             PixelFilter::Box => "box",

@@ -124,7 +124,7 @@ fn the_seed_scene_is_read_word_for_word() {
 
 #[test]
 fn filters_have_names() {
-    for (name, filter) in PixelFilter::NAMED {
+    for (name, filter) in ["box", "mitchell", "gauss"].into_iter().zip(PixelFilter::ALL) {
         let e = scene(&format!("rtdsl 1\nsphere()\nrender(filter: \"{name}\")\n"));
         assert_eq!((e.scene.settings.filter, filter.name()), (filter, name));
     }

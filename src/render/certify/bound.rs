@@ -48,7 +48,7 @@ pub fn hull(a: Span, b: Span) -> Span {
 }
 
 /// The part that both hold; where rounding has left none, the first.
-fn meet(a: Span, b: Span) -> Span {
+pub fn meet(a: Span, b: Span) -> Span {
     let both = [larger(a[0], b[0]), smaller(a[1], b[1])];
     if both[0] <= both[1] { both } else { a }
 }

@@ -1,14 +1,14 @@
 //! What certainty may cost: samples that keep a target whatever the scene are many more than those that keep it as far as
 //! they can tell. A picture with few pixels that no region settles can afford them; one full of such pixels can't.
 
-use super::super::crew::{crew, useful};
+use super::super::crew::{share_out, useful};
 use super::super::options::Options;
 use super::certifier::Certifier;
 use super::looks::Found;
 use super::memo::Memo;
 use super::target::Target;
 use crate::math::hash::KeyedHash;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Samples for certainty, for each pixel of the picture on the average: as many as a grid of 23×23.
 const AVERAGE: u64 = 512;
@@ -27,24 +27,17 @@ pub fn affordable(certifier: &Certifier<'_>, options: &Options, target: &Target,
     if !target.certificates {
         return 0;
     }
-    let next = AtomicUsize::new(0);
-    let needs = crew(useful(options.threads, tried), || {
-        let mut needs = Vec::new();
-        loop {
-            let i = next.fetch_add(1, Relaxed);
-            if i >= tried || cancel.load(Relaxed) {
-                return needs;
-            }
-            let corner = [i as u32 % columns * STEP, i as u32 / columns * STEP];
-            let key = KeyedHash::new().with(TRIED).with(i as u64);
-            let size = [options.width, options.height];
-            let at = [0, 1].map(|k| {
-                let side = STEP.min(size[k] - corner[k]);
-                corner[k] + (key.with(k as u64).bits() % side as u64) as u32
-            });
-            if let Found::Planned(plan) = certifier.looks(&mut Memo::default(), at, target, target.samples).found {
-                needs.push(plan.total);
-            }
+    let going = (0..tried).take_while(|_| !cancel.load(Relaxed));
+    let needs = share_out(useful(options.threads, tried), going, Vec::new, |needs, i| {
+        let corner = [i as u32 % columns * STEP, i as u32 / columns * STEP];
+        let key = KeyedHash::new().with(TRIED).with(i as u64);
+        let size = [options.width, options.height];
+        let at = [0, 1].map(|k| {
+            let side = STEP.min(size[k] - corner[k]);
+            corner[k] + (key.with(k as u64).bits() % side as u64) as u32
+        });
+        if let Found::Planned(plan) = certifier.looks(&mut Memo::default(), at, target, target.samples).found {
+            needs.push(plan.total);
         }
     });
     let mut needs = needs.concat();

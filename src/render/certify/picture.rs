@@ -1,7 +1,7 @@
 //! A picture brought to its target: regions of many pixels first, then pixel by pixel. Every pixel depends on the world, the
 //! options and the target alone, so the picture has the same bits for any number of threads.
 
-use super::super::crew::{crew, useful};
+use super::super::crew::{share_out, useful};
 use super::super::dispatch::sampler;
 use super::super::options::{Crop, Options, Progress, RayCounts, Silent};
 use super::super::world::World;
@@ -14,8 +14,7 @@ use super::sampler::Sampler;
 use super::target::{Pixel, Status, Target};
 use super::window::Window;
 use crate::math::Form;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Side of the largest regions, in pixels.
 const BLOCK: u32 = 8;
@@ -62,32 +61,24 @@ pub fn refine(
 ) -> Refined {
     let certifier = Certifier::new(world, options).for_target(target);
     let affordable = affordable(&certifier, options, target, control.cancel);
-    let blocks = blocks(options, pixels);
-    let next = AtomicUsize::new(0);
-    let counts = crew(threads(options), || {
-        let mut work = Work {
-            certifier: &certifier,
-            sampler: &mut *sampler(world, options, control.cancel),
-            memo: Memo::default(),
-            picture: [options.width, options.height],
-            target,
-            affordable,
-            cancel: control.cancel,
-            spent: 0,
-        };
-        while let Some(block) = blocks.get(next.fetch_add(1, Relaxed))
-            && !control.cancel.load(Relaxed)
-        {
-            // Locked once, by the thread whose turn it is.
-            let mut block = block.lock().unwrap_or_else(PoisonError::into_inner);
-            work.square(&mut block, BLOCK, [0, 0]);
-            if !control.cancel.load(Relaxed) {
-                block.tell(control.progress);
-            }
+    let blocks = blocks(options, pixels).into_iter().take_while(|_| !control.cancel.load(Relaxed));
+    let start = || Work {
+        certifier: &certifier,
+        sampler: sampler(world, options, control.cancel),
+        memo: Memo::default(),
+        picture: [options.width, options.height],
+        target,
+        affordable,
+        cancel: control.cancel,
+        spent: 0,
+    };
+    let workers = share_out(threads(options), blocks, start, |work, mut block| {
+        work.square(&mut block, BLOCK, [0, 0]);
+        if !control.cancel.load(Relaxed) {
+            block.tell(control.progress);
         }
-        work.sampler.counts()
     });
-    let rays = counts.into_iter().fold(RayCounts::default(), RayCounts::plus);
+    let rays = workers.iter().fold(RayCounts::default(), |rays, work| rays.plus(work.sampler.counts()));
     Refined { is_whole: !control.cancel.load(Relaxed), rays }
 }
 
@@ -109,7 +100,7 @@ struct Block<'p> {
 }
 
 /// Cuts the pixels of the options' part into blocks: those of the whole picture.
-fn blocks<'p>(options: &Options, pixels: &'p mut [Pixel]) -> Vec<Mutex<Block<'p>>> {
+fn blocks<'p>(options: &Options, pixels: &'p mut [Pixel]) -> Vec<Block<'p>> {
     let part = options.crop_or_all();
     // By the block that the number lies in: its start, and where the part of it ends that is asked for.
     let end = |at: u32, from: u32, length: u32| ((at / BLOCK + 1).saturating_mul(BLOCK)).min(from + length);
@@ -132,7 +123,7 @@ fn blocks<'p>(options: &Options, pixels: &'p mut [Pixel]) -> Vec<Mutex<Block<'p>
             (row, x, number) = (rest, x + width, number + 1);
         }
     }
-    blocks.into_iter().map(Mutex::new).collect()
+    blocks
 }
 
 impl Block<'_> {
@@ -153,7 +144,7 @@ impl Block<'_> {
 /// One thread's work.
 struct Work<'w> {
     certifier: &'w Certifier<'w>,
-    sampler: &'w mut dyn Sampler,
+    sampler: Box<dyn Sampler + Send + 'w>,
     memo: Memo,
     picture: [u32; 2],
     target: &'w Target,
@@ -176,7 +167,7 @@ impl Work<'_> {
         }
         if side == 1 {
             let memo = &mut self.memo;
-            let pixel = self.certifier.pixel(self.sampler, memo, [x, y], self.target, self.affordable);
+            let pixel = self.certifier.pixel(&mut *self.sampler, memo, [x, y], self.target, self.affordable);
             return self.put(block, [x, y], pixel);
         }
         // Squares that reach beyond the picture are looked at in parts.

@@ -6,7 +6,7 @@
 
 use super::super::bounds::{larger, smaller};
 use super::super::filter::{Kernel, OFF, Piece};
-use super::bound::{Bound, Span};
+use super::bound::{Bound, Span, meet};
 use crate::math::Form;
 
 /// Where light comes from, around a pixel's middle.
@@ -166,7 +166,7 @@ impl Weights {
             let by_sum = self.around(0.5 * mean[0] + 0.5 * mean[1], 0.0, 0.0);
             let spread = 0.5 * self.whole.abs() * (mean[1] - mean[0]);
             let rest = self.apart * half + SLACK * half + spread;
-            let part = met(by_range, [by_sum[0] - rest, by_sum[1] + rest]);
+            let part = meet(by_range, [by_sum[0] - rest, by_sum[1] + rest]);
             let form = bound.form.map(|f| f[c]).filter(|f| f.is_known());
             let by_form = form.map(|f| {
                 let linear = f.x * self.tilt[0] + f.y * self.tilt[1];
@@ -174,7 +174,7 @@ impl Weights {
                 let off = self.off[0] * f.x.abs() + self.off[1] * f.y.abs();
                 [lo + linear - off, hi + linear + off]
             });
-            sure(by_form.map_or(part, |form| met(part, form)))
+            sure(by_form.map_or(part, |form| meet(part, form)))
         })
     }
 
@@ -193,12 +193,6 @@ impl Weights {
 /// The same, or all numbers where it isn't one: of infinite light nothing is known.
 fn sure([lo, hi]: Span) -> Span {
     if lo <= hi { [lo, hi] } else { [f64::NEG_INFINITY, f64::INFINITY] }
-}
-
-/// The part that both hold; where rounding has left none, the first.
-fn met(a: Span, b: Span) -> Span {
-    let both = [larger(a[0], b[0]), smaller(a[1], b[1])];
-    if both[0] <= both[1] { both } else { a }
 }
 
 #[cfg(test)]

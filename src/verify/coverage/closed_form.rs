@@ -31,9 +31,9 @@ pub(super) struct Known {
 }
 
 /// What is asked of the pictures.
-struct Ask {
-    what: &'static str,
-    target: Target,
+pub(super) struct Ask {
+    pub(super) what: &'static str,
+    pub(super) target: Target,
 }
 
 /// Every way in which a pixel's error can come to be stated.
@@ -54,26 +54,37 @@ fn asks() -> Vec<Ask> {
 
 fn run(size: Size) -> Outcome {
     let mut outcome = Outcome::default();
-    let seeds = size.pick(10, 600);
-    for Ask { what, target } in asks() {
-        // Samples alone take about a hundred times as long.
-        let seeds = if target.certificates { seeds } else { seeds / 10 };
-        let (kept, first) = tried(seeds, &target, PixelFilter::Box, &KINDS);
-        outcome.cases += kept.cases();
-        outcome.figures.extend(kept.figures(what, target.confidence));
-        outcome.first_failure = outcome.first_failure.or(first);
-    }
-    // The negative control: bounds of which a tenth is believed have to be found out.
-    let weakened = Target { believed: 0.1, ..Target::new(4.0) };
-    let (kept, _) = tried(seeds, &weakened, PixelFilter::Box, &KINDS);
-    outcome.cases += kept.cases();
-    let text = "negative control, bounds made ten times narrower: broken";
-    outcome.figures.push(Figure::new(text, kept.broken() as f64, "", Bound::AtLeast(1.0)));
+    ask(&mut outcome, asks(), size.pick(10, 600), (PixelFilter::Box, &KINDS), "");
     outcome
 }
 
+/// Asks pictures of so many seeds, each of every kind, and adds what becomes of it to `outcome`, with figures that begin `of` what they are;
+/// last comes a negative control.
+pub(super) fn ask(
+    outcome: &mut Outcome,
+    asks: Vec<Ask>,
+    seeds: u64,
+    (filter, kinds): (PixelFilter, &[Kind]),
+    of: &str,
+) {
+    for Ask { what, target } in asks {
+        // Samples alone take about a hundred times as long.
+        let seeds = if target.certificates { seeds } else { seeds.div_ceil(10) };
+        let (kept, first) = tried(seeds, &target, filter, kinds);
+        outcome.cases += kept.cases();
+        outcome.figures.extend(kept.figures(&format!("{of}{what}"), target.confidence));
+        outcome.first_failure = outcome.first_failure.take().or(first);
+    }
+    // The negative control: bounds of which a tenth is believed have to be found out.
+    let weakened = Target { believed: 0.1, ..Target::new(4.0) };
+    let (kept, _) = tried(seeds, &weakened, filter, kinds);
+    outcome.cases += kept.cases();
+    let text = format!("{of}negative control, bounds made ten times narrower: broken");
+    outcome.figures.push(Figure::new(text, kept.broken() as f64, "", Bound::AtLeast(1.0)));
+}
+
 /// Pictures of so many seeds, each of every kind, brought to `target`; and the first pixel that breaks its word.
-pub(super) fn tried(seeds: u64, target: &Target, filter: PixelFilter, kinds: &[Kind]) -> (Kept, Option<String>) {
+fn tried(seeds: u64, target: &Target, filter: PixelFilter, kinds: &[Kind]) -> (Kept, Option<String>) {
     let one = |seed: u64| {
         let mut kept = Kept::default();
         let mut first = None;
