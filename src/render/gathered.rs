@@ -32,14 +32,17 @@ impl<E: Elem> Gathered<'_, E> {
             }
             return;
         }
-        for (column, value) in self.radiance.iter_mut().zip(value) {
-            let mut lanes = [E::default(); PADDING];
-            value.store(&mut lanes);
-            let mut rest = group.bits;
-            while rest != 0 {
-                let i = rest.trailing_zeros() as usize % PADDING;
-                rest &= rest - 1;
-                let sum = &mut column[slots[g + i].to_f64() as usize];
+        let mut lanes = [[E::default(); PADDING]; 3];
+        for (lanes, value) in lanes.iter_mut().zip(value) {
+            value.store(lanes);
+        }
+        let mut rest = group.bits;
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize % PADDING;
+            rest &= rest - 1;
+            let slot = slots[g + i].to_f64() as usize;
+            for (column, lanes) in self.radiance.iter_mut().zip(&lanes) {
+                let sum = &mut column[slot];
                 *sum = if self.first { lanes[i] } else { E::from_f64(sum.to_f64() + lanes[i].to_f64()) };
             }
         }

@@ -14,7 +14,7 @@ use super::way::Way;
 use super::world::World;
 use crate::math::real::{Mask, each3, select3, splat3, three};
 use crate::math::{Elem, Lane, Real};
-use crate::render::pattern::Rows;
+use crate::render::pattern_point::Rows;
 
 /// Room for what a shadow ray needs beside its candidates.
 #[derive(Debug, Default)]

@@ -39,6 +39,7 @@ mod nearest;
 pub mod optics;
 pub mod options;
 pub mod pattern;
+mod pattern_point;
 mod place;
 mod probe;
 pub mod ray;

@@ -6,6 +6,7 @@
 //!
 //! Everything here uses plain products and sums: the same bits whether or not it is compiled with fused operations.
 
+use super::pattern_point::{PatternPoint, Rows, apply};
 use super::texture::{Edge, Texture};
 use crate::math::fun;
 use crate::math::noise::{cell_noise, unit_noise, vector_noise};
@@ -22,9 +23,6 @@ pub struct PatternTable {
     /// The pictures.
     pub textures: Vec<Texture>,
 }
-
-/// Rows of a map: three factors and an addend each.
-pub type Rows = [[f64; 4]; 3];
 
 /// A pattern of the world. `a` and `b` are as in [`PatternKind`](crate::scene::PatternKind).
 #[derive(Clone, Debug)]
@@ -104,64 +102,53 @@ impl PatternNode {
     }
 }
 
-/// A point at which patterns are evaluated.
-#[derive(Clone, Copy)]
-pub struct PatternPoint<'a, R> {
-    /// The point in the space of the pattern being evaluated.
-    pub p: [R; 3],
-    /// The point in the shape's own frame.
-    pub local: [R; 3],
-    /// From there to every space of the table.
-    pub spaces: &'a [Rows],
-    /// Unit normal in the space in which the shape is made; only set where a picture asks.
-    pub normal: [R; 3],
-    /// From the shape's centre to the point, in the space in which it is made.
-    pub from_centre: [R; 3],
-    /// Half the shape's height there.
-    pub half_height: f64,
-}
-
-/// The image of a point.
-#[inline(always)]
-pub fn apply<R: Real>(rows: &Rows, p: [R; 3]) -> [R; 3] {
-    each3!(*rows, [x, y, z, w] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
-}
-
 #[inline(always)]
 fn apply_linear<R: Real>(rows: &[[f64; 3]; 3], p: [R; 3]) -> [R; 3] {
     each3!(*rows, [x, y, z] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + R::splat(z) * p[2])
 }
 
 impl PatternTable {
-    /// The value of pattern `id`. Recursion is as deep as patterns nest, which the language limits.
+    /// The value of pattern `id`.
+    #[inline(always)]
     pub fn eval<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+        match &self.nodes[id as usize] {
+            PatternNode::Constant(c) => splat3(*c),
+            PatternNode::InSpace(child, space) => {
+                self.eval_at(*child, apply(&at.spaces[*space as usize], at.local), at)
+            }
+            _ => self.eval_at(id, at.made(), at),
+        }
+    }
+
+    /// The value of pattern `id` at `p` of the space that it stands in, which is the point `at` of the surface. Recursion is as deep as
+    /// patterns nest, which the language limits.
+    fn eval_at<R: Lane>(&self, id: u32, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         R::vectorize(
             #[inline(always)]
-            || self.eval_here(id, at),
+            || self.eval_here(id, p, at),
         )
     }
 
     #[inline(always)]
-    fn eval_here<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
-        let p = at.p;
+    fn eval_here<R: Lane>(&self, id: u32, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         match &self.nodes[id as usize] {
             PatternNode::Constant(c) => splat3(*c),
             PatternNode::Checker(a, b, size) => {
                 let s = R::splat(*size);
                 let [x, y, z] = each3!(p, x => (x / s).floor());
-                self.by_parity(*a, *b, x + y + z, at)
+                self.by_parity((*a, *b), x + y + z, p, at)
             }
             PatternNode::Stripes(a, b, axis, size) => {
-                self.by_parity(*a, *b, (p[*axis as usize] / R::splat(*size)).floor(), at)
+                self.by_parity((*a, *b), (p[*axis as usize] / R::splat(*size)).floor(), p, at)
             }
             PatternNode::Rings(a, b, axis, size) => {
                 let (i, j) = ((*axis as usize + 1) % 3, (*axis as usize + 2) % 3);
                 let rho = (p[i] * p[i] + p[j] * p[j]).sqrt();
-                self.by_parity(*a, *b, (rho / R::splat(*size)).floor(), at)
+                self.by_parity((*a, *b), (rho / R::splat(*size)).floor(), p, at)
             }
             PatternNode::Gradient(a, b, axis, size) => {
                 let s = clamp01(p[*axis as usize] / R::splat(*size));
-                self.lerp(*a, *b, [s; 3], at)
+                self.lerp((*a, *b), [s; 3], p, at)
             }
             PatternNode::Noise(a, b, octaves, seed) => {
                 let [s] = R::each(
@@ -169,7 +156,7 @@ impl PatternTable {
                     #[inline(always)]
                     |p| [clamp01(unit_noise(p, *octaves, *seed))],
                 );
-                self.lerp(*a, *b, [s; 3], at)
+                self.lerp((*a, *b), [s; 3], p, at)
             }
             PatternNode::Cells(a, b, seed) => {
                 let [s] = R::each(
@@ -177,20 +164,24 @@ impl PatternTable {
                     #[inline(always)]
                     |p| [clamp01(cell_noise(p, *seed))],
                 );
-                self.lerp(*a, *b, [s; 3], at)
+                self.lerp((*a, *b), [s; 3], p, at)
             }
             PatternNode::Brick(mortar, brick, size, gap) => {
                 let [in_brick] = R::each(p, |p| [is_brick(p, *size, *gap)]); // 1 or 0
-                self.choose(in_brick.same(R::zero()), *mortar, *brick, at)
+                self.choose(in_brick.same(R::zero()), (*mortar, *brick), p, at)
             }
             PatternNode::Image { texture, mapping, filter, turn, turn_normal } => {
                 let texture = &self.textures[*texture as usize];
                 let (v, edges): ([R; 3], _) = match mapping {
                     Mapping::Planar { .. } => (p, [Edge::Repeat; 2]),
-                    Mapping::Normal => (apply_linear(turn_normal, at.normal), [Edge::Clamp; 2]),
+                    Mapping::Normal => (apply_linear(turn_normal, at.normal()), [Edge::Clamp; 2]),
                     Mapping::Spherical | Mapping::Cylindrical => {
-                        (apply_linear(turn, at.from_centre), [Edge::Repeat, Edge::Clamp])
+                        (apply_linear(turn, at.around_centre()), [Edge::Repeat, Edge::Clamp])
                     }
+                };
+                let half_height = match at.detail {
+                    Some(detail) => detail.half_height,
+                    None => 1.0,
                 };
                 R::each(
                     v,
@@ -200,22 +191,21 @@ impl PatternTable {
                             Mapping::Planar { axis } => planar(v, *axis),
                             Mapping::Normal => by_normal(v),
                             Mapping::Spherical => spherical(v),
-                            Mapping::Cylindrical => [longitude(v), 0.5 + 0.5 * v[1] / at.half_height],
+                            Mapping::Cylindrical => [longitude(v), 0.5 + 0.5 * v[1] / half_height],
                         };
                         texture.at(x, y, *filter, edges)
                     },
                 )
             }
             PatternNode::Mix(a, b, by) => {
-                let share = self.eval(*by, at);
-                self.lerp(*a, *b, share, at)
+                let share = self.child(*by, p, at);
+                self.lerp((*a, *b), share, p, at)
             }
-            PatternNode::Blend(stops, by) => self.blend(stops, self.eval(*by, at)[0], at),
+            PatternNode::Blend(stops, by) => self.blend(stops, self.child(*by, p, at)[0], p, at),
             PatternNode::InSpace(child, space) => {
-                let p = apply(&at.spaces[*space as usize], at.local);
-                self.eval(*child, &PatternPoint { p, ..*at })
+                self.eval_at(*child, apply(&at.spaces[*space as usize], at.local), at)
             }
-            PatternNode::Mapped(child, rows) => self.eval(*child, &PatternPoint { p: apply(rows, p), ..*at }),
+            PatternNode::Mapped(child, rows) => self.eval_at(*child, apply(rows, p), at),
             PatternNode::Turbulence(child, amount, octaves, seed) => {
                 let moved = R::each(
                     p,
@@ -225,58 +215,67 @@ impl PatternTable {
                         three!(i => p[i] + amount * v[i])
                     },
                 );
-                self.eval(*child, &PatternPoint { p: moved, ..*at })
+                self.eval_at(*child, moved, at)
             }
             PatternNode::Add(a, b) => {
-                let (x, y) = (self.eval(*a, at), self.eval(*b, at));
+                let (x, y) = (self.child(*a, p, at), self.child(*b, p, at));
                 three!(i => x[i] + y[i])
             }
             PatternNode::Multiply(a, b) => {
-                let (x, y) = (self.eval(*a, at), self.eval(*b, at));
+                let (x, y) = (self.child(*a, p, at), self.child(*b, p, at));
                 three!(i => x[i] * y[i])
             }
             PatternNode::Within(child, least, most) => {
-                each3!(self.eval(*child, at), x => x.max(R::splat(*least)).min(R::splat(*most)))
+                each3!(self.child(*child, p, at), x => x.max(R::splat(*least)).min(R::splat(*most)))
             }
         }
     }
 
     #[inline(always)]
-    fn by_parity<R: Lane>(&self, a: u32, b: u32, n: R, at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn by_parity<R: Lane>(&self, both: (u32, u32), n: R, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         let half = n * R::splat(0.5);
-        self.choose(half.floor().same(half), a, b, at)
+        self.choose(half.floor().same(half), both, p, at)
     }
 
     /// `a` where `m`, else `b`; what no lane needs isn't evaluated.
     #[inline(always)]
-    fn choose<R: Lane>(&self, m: R::Mask, a: u32, b: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn choose<R: Lane>(&self, m: R::Mask, (a, b): (u32, u32), p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         if !m.any() {
-            self.eval(b, at)
+            self.child(b, p, at)
         } else if !(!m).any() {
-            self.eval(a, at)
+            self.child(a, p, at)
         } else {
-            select3(m, self.eval(a, at), self.eval(b, at))
+            select3(m, self.child(a, p, at), self.child(b, p, at))
+        }
+    }
+
+    /// A pattern in the same space, without a call for the commonest: colours are mostly constants.
+    #[inline(always)]
+    fn child<R: Lane>(&self, id: u32, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+        match &self.nodes[id as usize] {
+            PatternNode::Constant(c) => splat3(*c),
+            _ => self.eval_at(id, p, at),
         }
     }
 
     #[inline(always)]
-    fn lerp<R: Lane>(&self, a: u32, b: u32, s: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
-        let (a, b) = (self.eval(a, at), self.eval(b, at));
+    fn lerp<R: Lane>(&self, (a, b): (u32, u32), s: [R; 3], p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+        let (a, b) = (self.child(a, p, at), self.child(b, p, at));
         three!(i => (R::one() - s[i]) * a[i] + s[i] * b[i])
     }
 
     #[inline(always)]
-    fn blend<R: Lane>(&self, stops: &[u32], by: R, at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn blend<R: Lane>(&self, stops: &[u32], by: R, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         let last = stops.len() - 1;
         let x = clamp01(by) * R::splat(last as f64);
-        let mut out = self.eval(stops[0], at);
+        let mut out = self.child(stops[0], p, at);
         for (k, &stop) in stops.iter().enumerate().skip(1) {
             let s = x - R::splat(k as f64 - 1.0);
             let here = R::zero().lt(s);
             if !here.any() {
                 break;
             }
-            let (s, c) = (s.min(R::one()), self.eval(stop, at));
+            let (s, c) = (s.min(R::one()), self.child(stop, p, at));
             out = select3(here, three!(i => (R::one() - s) * out[i] + s * c[i]), out);
         }
         out
@@ -333,7 +332,7 @@ mod tests {
     fn value(nodes: Vec<PatternNode>, p: [f64; 3]) -> f64 {
         let id = nodes.len() as u32 - 1;
         let table = PatternTable { nodes, ..PatternTable::default() };
-        let at = PatternPoint { p, local: p, spaces: &[], normal: p, from_centre: p, half_height: 1.0 };
+        let at = PatternPoint { local: p, spaces: &[], n: p, detail: None };
         table.eval::<f64>(id, &at)[0]
     }
 

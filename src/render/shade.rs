@@ -10,7 +10,7 @@ use super::highlight::power;
 use super::light::{Shadow, ShadowRays, occlusion};
 use super::material::{Slot, Surfacing};
 use super::optics::mirrored;
-use super::pattern::{PatternPoint, Rows};
+use super::pattern_point::{PatternPoint, Rows};
 use super::place::RESIDUE;
 use super::run::LaneGroup;
 use super::shape::primitive::spawn_point;

@@ -1,8 +1,9 @@
 //! The shapes of a scene where they stand, before they have numbers.
 
 use super::digest::LengthKey;
+use super::pattern_point::MadeDetail;
 use super::place::{Placed, place};
-use super::world::{Made, MadeDetail, MadeSpace, PointLight};
+use super::world::{Made, MadeSpace, PointLight};
 use crate::math::real::three;
 use crate::math::{Affine, Dd};
 use crate::scene::{Camera, MaterialId, NodeId, NodeKind, Scene, Shape};

@@ -1,7 +1,7 @@
 //! Where on a surface a pattern is asked for, and how a height pattern tilts the normal.
 
 use super::material::{Slot, Surfacing, rows};
-use super::pattern::{PatternPoint, Rows, apply};
+use super::pattern_point::{PatternPoint, Rows, turned};
 use super::place::RESIDUE;
 use super::shape::{Kind, Primitive};
 use super::world::{MadeSpace, World};
@@ -40,7 +40,7 @@ impl<'w> PatternFrame<'w> {
 
     /// The point `local` of the primitive's frame, with outward normal `n` in the world.
     #[inline(always)]
-    pub fn point<'s, R: Real>(&self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
+    pub fn point<'s, R: Real>(&'s self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
         self.point_as_made(spaces, self.as_made(local), n)
     }
 
@@ -58,23 +58,13 @@ impl<'w> PatternFrame<'w> {
     }
 
     #[inline(always)]
-    fn point_as_made<'s, R: Real>(&self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
-        let p = match spaces.first() {
-            Some(first) => apply(first, local),
-            None => local,
+    fn point_as_made<'s, R: Real>(&'s self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
+        // No `Option::map`: its closure may be compiled without the lanes' instructions.
+        let detail = match self.made {
+            Some(MadeSpace { detail: Some(detail), .. }) => Some(&**detail),
+            _ => None,
         };
-        let mut at = PatternPoint { p, local, spaces, normal: n, from_centre: p, half_height: 1.0 };
-        if let Some(MadeSpace { detail: Some(detail), .. }) = self.made {
-            at.normal = turned(&detail.made_normal_from_world, n);
-            // Not by way of the point: a shape made far from the origin keeps its bits.
-            let shift = detail.from_centre;
-            at.from_centre = match spaces.first() {
-                Some([x, y, z]) => apply(&[(x, 0), (y, 1), (z, 2)].map(|(r, i)| [r[0], r[1], r[2], shift[i]]), local),
-                None => local,
-            };
-            at.half_height = detail.half_height;
-        }
-        at
+        PatternPoint { local, spaces, n, detail }
     }
 
     /// What the material lets through at a point.
@@ -102,13 +92,6 @@ fn without_residue(mut rows: Rows, by_corners: bool) -> Rows {
         }
     }
     rows
-}
-
-/// A unit normal through the linear map for normals.
-#[inline(always)]
-fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
-    let m = each3!(*map, row => dot(splat3(row), n));
-    scaled(R::one() / dot(m, m).sqrt(), m)
 }
 
 /// The normal `ns` tilted by the slope of the height pattern: n − ∇h along the surface, in the space in which the shape was

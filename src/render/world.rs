@@ -12,6 +12,7 @@ use super::confine::Confined;
 use super::frame::LinearMap;
 use super::material::{Slot, Surfacing};
 use super::pattern::PatternTable;
+use super::pattern_point::MadeDetail;
 use super::place::Rescale;
 use super::ray::Own;
 use super::shape::primitive::Tables;
@@ -83,17 +84,6 @@ pub(super) struct MadeSpace {
     pub(super) rescale: Option<Box<Rescale>>,
     /// Only where a picture or a bump asks.
     pub(super) detail: Option<Box<MadeDetail>>,
-}
-
-/// What pictures and bumps need of a shape.
-pub(super) struct MadeDetail {
-    /// World normals to normals of the space in which the shape was made, but for their length.
-    pub(super) made_normal_from_world: [[f64; 3]; 3],
-    /// And back.
-    pub(super) world_normal_from_made: [[f64; 3]; 3],
-    /// From the shape's centre to the origin of its frame, in the space in which it was made.
-    pub(super) from_centre: [f64; 3],
-    pub(super) half_height: f64,
 }
 
 /// A plane n·p = offset.

@@ -5,11 +5,32 @@ use crate::math::real::Task;
 use crate::math::{Dd, Lane, Mask, Real};
 use std::arch::x86_64::*;
 
+/// For each mask of `WIDTH` lanes, which words of 32 bits go to the front, and in which order.
+const fn packing<const WIDTH: usize, const MASKS: usize>() -> [[i32; 8]; MASKS] {
+    let words = 8 / WIDTH;
+    let (mut orders, mut mask) = ([[0; 8]; MASKS], 0);
+    while mask < MASKS {
+        let (mut lane, mut to) = (0, 0);
+        while lane < WIDTH {
+            if mask >> lane & 1 == 1 {
+                let mut word = 0;
+                while word < words {
+                    orders[mask][to] = (lane * words + word) as i32;
+                    (to, word) = (to + 1, word + 1);
+                }
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    orders
+}
+
 macro_rules! register {
     ($name:ident, $one:ident, $mask:ident, $elem:ident, $int:ident, $width:literal, $register:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
      $set:ident, $zero:ident, $load:ident, $store:ident, $fma:ident, $fms:ident, $sqrt:ident, $floor:ident, $xor:ident, $and:ident,
      $and_not:ident, $or:ident, $compare:ident, $blend:ident, $bits:ident, $min:ident, $max:ident, $set_int:ident, $load_int:ident,
-     $same_int:ident, $from_int:ident) => {
+     $same_int:ident, $from_int:ident, $as_words:path, $from_words:path) => {
         /// Several numbers.
         #[derive(Clone, Copy, Debug)]
         pub(crate) struct $name($register);
@@ -108,12 +129,11 @@ macro_rules! register {
             }
             #[inline(always)]
             fn compress(self, m: $mask, dst: &mut [$elem]) {
-                let (a, dst) = (self.to_array(), &mut dst[..$width]);
-                let (mut bits, mut at) = (m.bits(), 0);
-                while bits != 0 {
-                    dst[at] = a[bits.trailing_zeros() as usize % $width];
-                    at += 1;
-                    bits &= bits - 1;
+                const PACK: [[i32; 8]; 1 << $width] = packing::<$width, { 1 << $width }>();
+                unsafe {
+                    let order = _mm256_loadu_si256(PACK[m.bits() as usize % (1 << $width)].as_ptr().cast());
+                    let packed = $from_words(_mm256_permutevar8x32_ps($as_words(self.0), order));
+                    $store(dst[..$width].as_mut_ptr(), packed)
                 }
             }
         }
@@ -152,7 +172,9 @@ register!(
     _mm256_set1_epi64x,
     _mm256_loadu_si256,
     _mm256_cmpeq_epi64,
-    _mm256_castsi256_pd
+    _mm256_castsi256_pd,
+    _mm256_castpd_ps,
+    _mm256_castps_pd
 );
 register!(
     F32x8,
@@ -186,5 +208,7 @@ register!(
     _mm256_set1_epi32,
     _mm256_loadu_si256,
     _mm256_cmpeq_epi32,
-    _mm256_castsi256_ps
+    _mm256_castsi256_ps,
+    std::convert::identity,
+    std::convert::identity
 );

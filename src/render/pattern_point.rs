@@ -1,0 +1,77 @@
+//! The point of a surface at which a pattern is asked for, and the maps from there to the spaces that patterns stand in.
+
+use crate::math::real::{Real, dot, each3, scaled, splat3};
+
+/// Rows of a map: three factors and an addend each.
+pub type Rows = [[f64; 4]; 3];
+
+/// A point of a surface at which patterns are evaluated. What but few of them ask for is found when they do.
+#[derive(Clone, Copy)]
+pub struct PatternPoint<'a, R> {
+    /// The point in the shape's own frame.
+    pub local: [R; 3],
+    /// From there to every space of the table; none where only constants are asked for.
+    pub spaces: &'a [Rows],
+    /// Outward unit normal in the world.
+    pub n: [R; 3],
+    /// Only where a picture or a bump asks.
+    pub detail: Option<&'a MadeDetail>,
+}
+
+/// What pictures and bumps need of a shape.
+#[derive(Clone, Debug)]
+pub struct MadeDetail {
+    /// World normals to normals of the space in which the shape was made, but for their length.
+    pub made_normal_from_world: [[f64; 3]; 3],
+    /// And back.
+    pub world_normal_from_made: [[f64; 3]; 3],
+    /// From the shape's centre to the origin of its frame, in the space in which it was made.
+    pub from_centre: [f64; 3],
+    /// Half the shape's height there.
+    pub half_height: f64,
+}
+
+impl<R: Real> PatternPoint<'_, R> {
+    /// The point in the space in which the shape is made.
+    #[inline(always)]
+    pub fn made(&self) -> [R; 3] {
+        match self.spaces.first() {
+            Some(first) => apply(first, self.local),
+            None => self.local,
+        }
+    }
+
+    /// The unit normal there.
+    #[inline(always)]
+    pub fn normal(&self) -> [R; 3] {
+        match self.detail {
+            Some(detail) => turned(&detail.made_normal_from_world, self.n),
+            None => self.n,
+        }
+    }
+
+    /// From the shape's centre to the point there. Not by way of the point: a shape made far from the origin keeps its bits.
+    #[inline(always)]
+    pub fn around_centre(&self) -> [R; 3] {
+        match (self.detail, self.spaces.first()) {
+            (Some(detail), Some([x, y, z])) => {
+                let shift = detail.from_centre;
+                apply(&[(x, 0), (y, 1), (z, 2)].map(|(r, i)| [r[0], r[1], r[2], shift[i]]), self.local)
+            }
+            _ => self.made(),
+        }
+    }
+}
+
+/// A unit normal through the linear map for normals.
+#[inline(always)]
+pub fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
+    let m = each3!(*map, row => dot(splat3(row), n));
+    scaled(R::one() / dot(m, m).sqrt(), m)
+}
+
+/// The image of a point.
+#[inline(always)]
+pub fn apply<R: Real>(rows: &Rows, p: [R; 3]) -> [R; 3] {
+    each3!(*rows, [x, y, z, w] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
+}
