@@ -1,4 +1,5 @@
-//! Which pixels of a picture differ from their neighbours. It is looked at in blocks, and again only where something has changed.
+//! Which pixels of a picture differ from their neighbours. It is looked at in blocks, and again only where something has changed. Codes
+//! are made anew each time: to keep those of a whole picture takes longer.
 
 use super::options::Crop;
 
@@ -36,9 +37,10 @@ impl Blocks {
         self.across * self.down
     }
 
-    /// How many bands hold some of these blocks.
-    pub fn bands(self, some: &[bool]) -> usize {
-        some.chunks(self.across.max(1)).filter(|band| band.contains(&true)).count()
+    /// How many bands hold some of these blocks; but no more than there are groups of `few` of them, for less isn't worth a thread.
+    pub fn pieces(self, some: &[bool], few: usize) -> usize {
+        let bands = some.chunks(self.across.max(1)).filter(|band| band.contains(&true)).count();
+        bands.min(some.iter().filter(|some| **some).count() / few)
     }
 
     /// `some` blocks, and those that share a side with them.
@@ -63,60 +65,96 @@ impl Blocks {
     }
 }
 
-/// About the codes of 8 bits of as many pixels as there are places for. The root is close to the curve of sRGB, and lanes have it.
-pub fn encode(pixels: &[[f32; 3]], codes: &mut [[u8; 3]]) {
-    let codes = codes.as_flattened_mut().iter_mut();
-    codes.zip(pixels.as_flattened()).for_each(|(code, v)| *code = (255.0 * v.clamp(0.0, 1.0).sqrt()) as u8);
+/// About the code of 8 bits of a channel. The root is close to the curve of sRGB, and every machine has it in its registers; so has
+/// the sum the next whole number in its lowest bits.
+#[inline(always)]
+fn code(v: f32) -> u8 {
+    /// 2^23: from here on `f32` are whole numbers.
+    const WHOLE: f32 = 8_388_608.0;
+    let v = if v > 0.0 { v } else { 0.0 };
+    let v = if v < 1.0 { v } else { 1.0 };
+    (255.0 * v.sqrt() + WHOLE).to_bits() as u8
 }
 
-/// Marks those pixels of a band as lacking rays that have had fewer than `level` passes, and either some, or differ by more than `most`
-/// codes from a neighbour beside, above or below. Only `wanted` blocks are looked at, and those are left that have such pixels. `codes` are
-/// of the whole picture, whose row `y` is the band's first.
+/// Codes of a row of a block, and of one pixel more on each side.
+type Row = [u8; 3 * (ACROSS as usize + 2)];
+
+/// Those of the block from column `x` to `end` of a row. Beyond the picture's edge everything is as on this side.
+fn row_of_codes(row: &[[f32; 3]], (x, end): (usize, usize), codes: &mut Row) {
+    let (before, after) = (x.max(1) - 1, end.min(row.len() - 1));
+    codes[..3].copy_from_slice(&row[before].map(code));
+    for (code_of, v) in codes[3..].iter_mut().zip(row[x..end].as_flattened()) {
+        *code_of = code(*v);
+    }
+    codes[3 * (end - x + 1)..][..3].copy_from_slice(&row[after].map(code));
+}
+
+/// What decides about pixels that are marked.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Neighbours of which a channel differs by more codes of 8 bits.
+    pub codes: u8,
+    /// As many passes are to be had.
+    pub level: u8,
+}
+
+/// Marks those pixels of a band as lacking rays that have had too few passes, and either some, or differ too much
+/// from a neighbour beside, above or below. Only `wanted` blocks are looked at, and those are left that have such pixels; `had` are those
+/// in which any pixel has had some. `pixels` are of the whole picture, whose row `y` is the band's first.
 pub fn mark(
-    (codes, width, y): (&[[u8; 3]], usize, usize),
-    (most, level): (u8, u8),
+    (pixels, width, y): (&[[f32; 3]], usize, usize),
+    limits: Limits,
     marks: &mut Marks<'_>,
-    wanted: &mut [bool],
+    (wanted, had): (&mut [bool], &[bool]),
 ) {
-    let row = |y: usize| codes.get(width * y..width * (y + 1));
-    for (x, wanted) in (0..width).step_by(ACROSS as usize).zip(wanted) {
+    let row = |y: usize| pixels.get(width * y..width * (y + 1));
+    let rows = marks.levels.len() / width;
+    for ((x, wanted), had) in (0..width).step_by(ACROSS as usize).zip(wanted).zip(had) {
         if !*wanted {
             continue;
         }
         let end = (x + ACROSS as usize).min(width);
-        *wanted = false;
-        let rows = marks.levels.chunks(width).zip(marks.lacking.chunks_mut(width));
-        for (y, (levels, lacking)) in (y..).zip(rows) {
-            let Some(here) = row(y) else { continue };
-            let mut differ = [0; 3 * ACROSS as usize];
-            let differ = &mut differ[..3 * (end - x)];
-            let block = here[x..end].as_flattened();
-            // Beyond the picture's edge everything is as on this side.
-            for other in [y.checked_sub(1).and_then(row), row(y + 1)].into_iter().flatten() {
-                note_differences(block, other[x..end].as_flattened(), differ);
+        let codes_of = |y: usize, codes: &mut Row| {
+            if let Some(row) = row(y) {
+                row_of_codes(row, (x, end), codes);
             }
-            let left = x.max(1);
-            note_differences(
-                here[left..end].as_flattened(),
-                here[left - 1..].as_flattened(),
-                &mut differ[3 * (left - x)..],
-            );
-            note_differences(block, here[x + 1..].as_flattened(), differ);
-            let (levels, differ) = (&levels[x..end], differ.as_chunks::<3>().0);
-            for ((lacks, had), [r, g, b]) in lacking[x..end].iter_mut().zip(levels).zip(differ) {
-                let differs = (*r.max(g).max(b) > most) | (*had > 0);
-                *lacks |= (*had < level) & differs;
+        };
+        *wanted = false;
+        let mut codes = [[0; 3 * (ACROSS as usize + 2)]; 3];
+        codes_of(y, &mut codes[1]);
+        codes[0] = codes[1];
+        if let Some(y) = y.checked_sub(1) {
+            codes_of(y, &mut codes[0]);
+        }
+        for at in 0..rows {
+            codes[2] = codes[1];
+            codes_of(y + at + 1, &mut codes[2]);
+            let differ = differences(&codes);
+            codes.rotate_left(1);
+            let differ = &differ[..3 * (end - x)];
+            if !had && differ.iter().fold(0, |most: u8, d| most.max(*d)) <= limits.codes {
+                continue; // mostly, and the marks needn't be looked at
+            }
+            let here = at * width + x..at * width + end;
+            let (levels, differ) = (&marks.levels[here.clone()], differ.as_chunks::<3>().0);
+            for ((lacks, had), [r, g, b]) in marks.lacking[here].iter_mut().zip(levels).zip(differ) {
+                let differs = (*r.max(g).max(b) > limits.codes) | (*had > 0);
+                *lacks |= (*had < limits.level) & differs;
                 *wanted |= *lacks;
             }
         }
     }
 }
 
-/// Notes by how much `a` differ from those of `b` in the same place, as far as the shortest goes, where that is more.
-fn note_differences(a: &[u8], b: &[u8], differ: &mut [u8]) {
-    for ((a, b), differ) in a.iter().zip(b).zip(differ) {
-        *differ = (*differ).max(a.abs_diff(*b));
+/// By how much the middle one of three rows differs at most from what is beside, above and below.
+fn differences([above, here, below]: &[Row; 3]) -> [u8; 3 * ACROSS as usize] {
+    let mut differ = [0; 3 * ACROSS as usize];
+    for (i, differ) in differ.iter_mut().enumerate() {
+        let own = here[i + 3];
+        let beside = own.abs_diff(here[i]).max(own.abs_diff(here[i + 6]));
+        *differ = beside.max(own.abs_diff(above[i + 3])).max(own.abs_diff(below[i + 3]));
     }
+    differ
 }
 
 #[cfg(test)]
@@ -128,14 +166,15 @@ mod tests {
     fn pixels_are_marked_on_both_sides_of_what_differs() {
         // A picture of 70 × 11 with one pixel that differs, at every place.
         for (x, y) in (0..70).flat_map(|x| (0..11).map(move |y| (x, y))) {
-            let mut codes = vec![[7, 100, 9]; 770];
-            codes[70 * y + x][1] += 9;
+            let mut pixels = vec![[0.001, 0.16, 0.002]; 770];
+            pixels[70 * y + x][1] = 0.19; // 9 codes more: 102, 111
             let (mut levels, mut lacking) = (vec![0; 770], vec![false; 770]);
             let blocks = Blocks::of(Crop { x: 0, y: 0, width: 70, height: 11 });
             let mut wanted = vec![true; blocks.count()];
             let bands = levels.chunks_mut(560).zip(lacking.chunks_mut(560)).zip(wanted.chunks_mut(blocks.across));
             for (band, ((levels, lacking), wanted)) in bands.enumerate() {
-                mark((&codes, 70, 8 * band), (8, 1), &mut Marks { levels, lacking }, wanted);
+                let limits = Limits { codes: 8, level: 1 };
+                mark((&pixels, 70, 8 * band), limits, &mut Marks { levels, lacking }, (wanted, &[false; 3]));
             }
             for (i, lacks) in lacking.iter().enumerate() {
                 let apart = (i % 70).abs_diff(x) + (i / 70).abs_diff(y);
@@ -143,26 +182,24 @@ mod tests {
                 assert!(wanted[i / 560 * blocks.across + i % 70 / 32] || !lacks);
             }
             let mut marks = Marks { levels: &mut [0; 560], lacking: &mut [false; 560] };
-            mark((&codes, 70, 0), (9, 1), &mut marks, &mut [true; 3]);
+            mark((&pixels, 70, 0), Limits { codes: 9, level: 1 }, &mut marks, (&mut [true; 3], &[false; 3]));
             assert!(marks.lacking.iter().all(|lacks| !lacks));
             // What had rays before gets more.
             marks.levels[3] = 1;
-            mark((&codes, 70, 0), (9, 2), &mut marks, &mut [true; 3]);
+            let had = [true, false, false];
+            mark((&pixels, 70, 0), Limits { codes: 9, level: 2 }, &mut marks, (&mut [true; 3], &had));
             assert!(marks.lacking.iter().enumerate().all(|(i, lacks)| *lacks == (i == 3)));
         }
     }
 
     #[test]
     fn codes_are_near_those_of_files() {
-        let mut codes = [[0; 3]];
         for v in 0..=1000 {
-            encode(&[[v as f32 / 1000.0, -1.0, 2.0]], &mut codes);
             let true_code = (255.0 * encode_srgb(v as f64 / 1000.0)).round();
-            assert!(
-                (codes[0][0] as f64 - true_code).abs() <= 11.0 && codes[0][1..] == [0, 255],
-                "{v}: {codes:?}, {true_code}"
-            );
+            let near = code(v as f32 / 1000.0);
+            assert!((near as f64 - true_code).abs() <= 11.0, "{v}: {near}, {true_code}");
         }
+        assert_eq!([-1.0, f32::NAN, -0.0, 1.0, 2.0, f32::INFINITY].map(code), [0, 0, 0, 255, 255, 255]);
     }
 
     #[test]

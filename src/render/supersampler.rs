@@ -3,7 +3,7 @@
 use super::certify::Sampler;
 use super::filter::Kernel;
 use super::lattice::Lattice;
-use super::marks::{ACROSS, Marks, encode};
+use super::marks::{ACROSS, Marks};
 use super::options::{Crop, RayCounts};
 use super::tile::Mean;
 use crate::math::hash::KeyedHash;
@@ -15,12 +15,12 @@ const SKETCH: u64 = 3;
 
 /// Points that stand for a pixel.
 pub struct Points {
-    lattice: Lattice,
-    /// Turned over in every way: neighbours rarely share one, so that patterns are seen by chance, not by beats.
-    ways: [Vec<Point>; 4],
-    /// How many a pixel had before, after so many passes: as many as a lattice has that this one holds.
-    before: Vec<u32>,
-    /// What those come to, and last what all come to, where some count against the light.
+    /// Turned over in every way: neighbours rarely share one, so that patterns are seen by chance, not by beats. Of each way those that a
+    /// pixel lacks, by the number of passes that it has had.
+    ways: [Vec<Vec<Point>>; 4],
+    /// How many passes there were before.
+    passes: usize,
+    /// What the points come to that a pixel had after so many passes, and last what all come to, where some count against the light.
     signs: Vec<f64>,
     /// By how much they may lie outside of their pixel.
     beyond: f64,
@@ -43,18 +43,26 @@ impl Points {
             Point { at: [u, v], sign: k.sign(u) * k.sign(v) }
         };
         let ways = [0, 1, 2, 3].map(|way| lattice.points(way).map(point).collect::<Vec<Point>>());
-        let signs = |count: &u32| ways[0].iter().step_by((lattice.count() / count) as usize).map(|p| p.sign).sum();
+        let step = |count: &u32| (lattice.count() / count) as usize;
+        let signs = |count: &u32| ways[0].iter().step_by(step(count)).map(|p| p.sign).sum();
         let signs = before.iter().chain([&lattice.count()]).map(signs).collect();
+        let lacked = |points: &Vec<Point>, count| points.chunks(step(count)).flat_map(|p| &p[1..]).copied().collect();
+        let ways = ways.each_ref().map(|points| before.iter().map(|count| lacked(points, count)).collect());
         let beyond = kernel.as_ref().map_or(0.0, |k| k.radius() - 0.5);
-        Points { lattice, ways, before: before.to_vec(), signs, beyond }
+        Points { ways, passes: before.len(), signs, beyond }
     }
 
-    /// As many as pixel (x, y) lacks that has had rays of `level` passes.
-    fn lacked(&self, x: u32, y: u32, level: u8) -> impl Iterator<Item = &Point> {
+    /// Those that pixel (x, y) lacks that has had rays of `level` passes.
+    fn lacked(&self, [x, y]: [u32; 2], level: u8) -> &[Point] {
         let way = KeyedHash::new().with(SKETCH).with(x as u64).with(y as u64).bits() % 4;
-        let step = self.lattice.count() / self.before[level as usize];
-        self.ways[way as usize].chunks(step as usize).flat_map(|points| &points[1..])
+        &self.ways[way as usize][level as usize]
     }
+}
+
+/// A pixel that lacks rays: its place in the band, by column and row, and the points that it lacks.
+struct Lacking<'p> {
+    at: [u32; 2],
+    points: &'p [Point],
 }
 
 /// One thread's work on a pass.
@@ -62,20 +70,18 @@ pub struct Supersampler<'p, 'w> {
     sampler: Box<dyn Sampler + Send + 'w>,
     points: &'p Points,
     part: Crop,
-    /// Pixels of the block at hand: their place in the band, by column and row.
-    pixels: Vec<[u32; 2]>,
+    /// Pixels of the block at hand.
+    pixels: Vec<Lacking<'p>>,
     /// Points of the picture: of each pixel those that it lacks, one pixel after the other.
     at: Vec<[f64; 2]>,
-    /// And their signs.
-    signs: Vec<f64>,
     lights: Vec<[f64; 3]>,
 }
 
 impl<'p, 'w> Supersampler<'p, 'w> {
     /// For a part of a picture.
     pub fn new(sampler: Box<dyn Sampler + Send + 'w>, points: &'p Points, part: Crop) -> Supersampler<'p, 'w> {
-        let (pixels, at, signs, lights) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Supersampler { sampler, points, part, pixels, at, signs, lights }
+        let (pixels, at, lights) = (Vec::new(), Vec::new(), Vec::new());
+        Supersampler { sampler, points, part, pixels, at, lights }
     }
 
     /// Rays so far.
@@ -84,64 +90,52 @@ impl<'p, 'w> Supersampler<'p, 'w> {
     }
 
     /// Traces the rays that pixels lack in the block of a band that begins at column x. The band begins at row y of the picture.
-    pub fn block(
-        &mut self,
-        [x, y]: [u32; 2],
-        (pixels, marks, codes): (&mut [[f32; 3]], &mut Marks<'_>, &mut [[u8; 3]]),
-        cancel: &AtomicBool,
-    ) {
-        let (part, count) = (self.part, self.points.lattice.count());
-        let columns = x..(x + ACROSS).min(part.width);
+    pub fn block(&mut self, [x, y]: [u32; 2], (pixels, marks): (&mut [[f32; 3]], &mut Marks<'_>), cancel: &AtomicBool) {
+        let (part, points) = (self.part, self.points);
+        let end = (x + ACROSS).min(part.width);
+        let place = |[x, row]: [u32; 2]| (row * part.width + x) as usize;
         self.pixels.clear();
+        self.at.clear();
         for (row, lacking) in (0..).zip(marks.lacking.chunks(part.width as usize)) {
-            let lacking = columns.clone().filter(|x| lacking[*x as usize]);
-            self.pixels.extend(lacking.map(|x| [x, row]));
+            for (column, _) in (x..).zip(&lacking[x as usize..end as usize]).filter(|(_, lacks)| **lacks) {
+                let (at, pixel) = ([column, row], [part.x + column, y + row]);
+                let lacked = points.lacked(pixel, marks.levels[place(at)]);
+                self.pixels.push(Lacking { at, points: lacked });
+                let [x, y] = pixel.map(|at| at as f64 + 0.5);
+                self.at.extend(lacked.iter().map(|p| [x + p.at[0], y + p.at[1]]));
+            }
         }
         if self.pixels.is_empty() {
             return;
-        }
-        let place = |[x, row]: [u32; 2]| (row * part.width + x) as usize;
-        self.at.clear();
-        self.signs.clear();
-        for &pixel in &self.pixels {
-            let [x, y] = [part.x + pixel[0], y + pixel[1]];
-            let lacked = self.points.lacked(x, y, marks.levels[place(pixel)]);
-            for Point { at: [right, down], sign } in lacked {
-                self.at.push([x as f64 + 0.5 + right, y as f64 + 0.5 + down]);
-                self.signs.push(*sign);
-            }
         }
         let [first, last] = ends(&self.pixels);
         let beyond = self.points.beyond;
         let [left, top] = [part.x + first[0], y + first[1]].map(|at| at as f64 - beyond);
         let [right, bottom] = [part.x + last[0] + 1, y + last[1] + 1].map(|at| at as f64 + beyond);
-        let lights = &mut self.lights;
-        lights.clear();
-        self.sampler.trace([left, top, right, bottom], &self.at, &mut |_, light| lights.push(light));
+        self.lights.clear();
+        self.sampler.add_lights([left, top, right, bottom], &self.at, &mut self.lights);
         if cancel.load(Relaxed) {
             return;
         }
-        let Points { before, signs, .. } = self.points;
         // A whole number, and more than half of them: few of a filter's weights are negative.
-        let mean = Mean::of(signs[before.len()] as u32);
-        let mut lights = self.lights.iter().zip(&self.signs);
-        for at in self.pixels.iter().map(|pixel| place(*pixel)) {
-            let level = marks.levels[at] as usize;
-            let sum = pixels[at].map(|mean| signs[level] * mean as f64);
-            let sum = lights
-                .by_ref()
-                .take((count - before[level]) as usize)
-                .fold(sum, |sum, (light, sign)| [0, 1, 2].map(|c| sum[c] + sign * light[c]));
+        let (level, mean) = (points.passes, Mean::of(points.signs[points.passes] as u32));
+        let mut lights = self.lights.iter();
+        for Lacking { at, points: lacked } in &self.pixels {
+            let at = place(*at);
+            let had = points.signs[marks.levels[at] as usize];
+            let mut sum = pixels[at].map(|mean| had * mean as f64);
+            for (point, light) in lacked.iter().zip(&mut lights) {
+                sum = [0, 1, 2].map(|c| sum[c] + point.sign * light[c]);
+            }
             pixels[at] = sum.map(|s| mean.resolve(s));
-            encode(&pixels[at..=at], &mut codes[at..=at]);
-            (marks.levels[at], marks.lacking[at]) = (before.len() as u8, false);
+            (marks.levels[at], marks.lacking[at]) = (level as u8, false);
         }
     }
 }
 
-/// The corners of the smallest rectangle around some places.
-fn ends(places: &[[u32; 2]]) -> [[u32; 2]; 2] {
-    places.iter().fold([[u32::MAX; 2], [0; 2]], |[least, most], p| {
+/// The corners of the smallest rectangle around some pixels.
+fn ends(pixels: &[Lacking<'_>]) -> [[u32; 2]; 2] {
+    pixels.iter().map(|pixel| pixel.at).fold([[u32::MAX; 2], [0; 2]], |[least, most], p| {
         [[least[0].min(p[0]), least[1].min(p[1])], [most[0].max(p[0]), most[1].max(p[1])]]
     })
 }

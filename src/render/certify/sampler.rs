@@ -13,9 +13,16 @@ use std::sync::atomic::AtomicBool;
 
 /// Traces points of the picture in 64-bit numbers. What it is compiled for never changes a bit.
 pub trait Sampler {
-    /// Calls `seen` with the number and the light of each point, all of which lie within `rect`: left, top, right, bottom. Where
-    /// the work is cancelled meanwhile, that light means nothing.
-    fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3]));
+    /// Adds the light of each point to `lights`, all of which lie within `rect`: left, top, right, bottom. Where the work is cancelled
+    /// meanwhile, that light means nothing.
+    fn add_lights(&mut self, rect: [f64; 4], points: &[[f64; 2]], lights: &mut Vec<[f64; 3]>);
+
+    /// Calls `seen` with the number and the light of each point, likewise.
+    fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3])) {
+        let mut lights = Vec::with_capacity(points.len());
+        self.add_lights(rect, points, &mut lights);
+        lights.into_iter().enumerate().for_each(|(i, light)| seen(i, light));
+    }
 
     /// From now on mirrored and transmitted rays are left out whose weight is `most` or less in every channel.
     fn leave_out(&mut self, most: f64);
@@ -86,24 +93,24 @@ impl<'w, L: Lane> LaneSampler<'w, L> {
 }
 
 impl<L: Lane> Sampler for LaneSampler<'_, L> {
-    fn trace(&mut self, rect: [f64; 4], points: &[[f64; 2]], seen: &mut dyn FnMut(usize, [f64; 3])) {
+    fn add_lights(&mut self, rect: [f64; 4], points: &[[f64; 2]], lights: &mut Vec<[f64; 3]>) {
         let found = L::vectorize(
             #[inline(always)]
             || self.find_candidates(rect, points.len()),
         );
         if !found {
-            (0..points.len()).for_each(|i| seen(i, self.world.background));
+            lights.extend(points.iter().map(|_| self.world.background));
             self.tracer.counts.camera += points.len() as u64;
             return;
         }
-        for (chunk, first) in points.chunks(MOST).zip((0..).step_by(MOST)) {
+        for chunk in points.chunks(MOST) {
             L::vectorize(
                 #[inline(always)]
                 || self.batch(chunk),
             );
-            for i in 0..chunk.len() {
-                seen(first + i, [0, 1, 2].map(|c| self.tracer.radiance[c][i].to_f64()));
-            }
+            let [red, green, blue] = &self.tracer.radiance;
+            let light = red.iter().zip(green.iter()).zip(blue.iter()).take(chunk.len());
+            lights.extend(light.map(|((r, g), b)| [r.to_f64(), g.to_f64(), b.to_f64()]));
         }
     }
 
