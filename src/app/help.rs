@@ -51,6 +51,7 @@ fn about(topic: &str) -> Result<String, Stop> {
 fn unknown(topic: &str) -> Stop {
     let cli = Cli::command();
     let mut words = lang::topics();
+    words.extend(lang::parameters());
     words.extend(cli.get_subcommands().map(|c| c.get_name()));
     let mut d = Diagnostic::error(format!("`{topic}` is neither a word of the scene language nor a command"));
     if let Some(near) = nearest(topic, &words) {
@@ -77,6 +78,11 @@ mod tests {
         let both = about("render").unwrap();
         assert!(both.contains("grid(2)") && both.contains("rtdsl render --help"), "{both}");
         assert!(about("no such word").is_err());
+        let filter = about("filter").unwrap();
+        assert!(filter.contains("filter(list, f)") && filter.contains("mitchell"), "function, and setting: {filter}");
+        let shininess = about("shininess").unwrap();
+        assert!(matches!(about("shinines"), Err(stop) if format!("{stop:?}").contains("did you mean `shininess`?")));
+        assert!(shininess.starts_with("`shininess: …` is given to:\n\n  phong"), "{shininess}");
         let all = overview();
         assert!(["explain", "torus", "|>", "scatter"].iter().all(|w| all.contains(w)), "{all}");
         assert!(about("tomato").is_ok() && !all.contains("tomato"));

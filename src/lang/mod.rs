@@ -51,7 +51,7 @@ pub mod word;
 pub use highlight::{Token, TokenClass, highlight};
 pub use memory::Memory;
 pub use picture::FILE_BYTES as LARGEST_FILE;
-pub use reference::{chapter, chapter_topics, chapters, help, topics};
+pub use reference::{chapter, chapter_topics, chapters, help, parameters, topics};
 pub use request::{Dependency, Evaluated, Failure, Input, Param, ParamKind, Request};
 
 use crate::diag::{Diagnostic, Diagnostics, FileId, Source, Sources, Span};

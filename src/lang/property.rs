@@ -256,7 +256,9 @@ impl Param {
                 let n = number_text(*n);
                 fault.label(format!("write `gray({n})`, or `linear({n})` for linear light")).fix(format!("gray({n})"))
             }
-            (Ty::Color | Ty::ColorPaint, Value::Vec3(_)) => fault.label("write `rgb(…)` or `linear(…)`"),
+            (Ty::Color | Ty::ColorPaint | Ty::Paint | Ty::Level, Value::Vec3(_)) => {
+                fault.label("for a color, write `rgb(…)` or `linear(…)`")
+            }
             (Ty::Material, Value::Color(_) | Value::Pattern(_)) => fault.label("write `matte(…)` or `phong(color: …)`"),
             (Ty::Point | Ty::Direction, Value::List(items)) if items.len() == 2 => {
                 fault.label("the third number is missing")

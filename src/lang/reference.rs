@@ -11,10 +11,23 @@ pub fn topics() -> Vec<&'static str> {
 }
 
 /// All about one topic as plain text that ends in a newline: how it is written, what it does, its parameters, an example,
-/// and where to look next. `None` if there is no such topic.
+/// and where to look next. Of the name of a parameter, whose it is. `None` if there is no such topic.
 pub fn help(topic: &str) -> Option<String> {
     let word = catalog().iter().find(|w| w.name == topic);
-    word.map(|w| word_help(w)).or_else(|| TOPICS.iter().find(|t| t.names.contains(&topic)).map(topic_help))
+    let own = word.map(|w| word_help(w)).or_else(|| TOPICS.iter().find(|t| t.names.contains(&topic)).map(topic_help));
+    match (own, parameter_help(topic)) {
+        (Some(own), Some(parameter)) => Some(format!("{own}\n{parameter}")),
+        (own, parameter) => own.or(parameter),
+    }
+}
+
+/// The names of all parameters, of which [`help`] tells too.
+pub fn parameters() -> Vec<&'static str> {
+    let params = catalog().iter().flat_map(|w| w.params);
+    let mut names: Vec<&str> = params.filter(|p| !p.rest).map(|p| p.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
 }
 
 /// The chapter of this title in Markdown, its words in the order of their table; `Keywords and signs` is one too. `None` if
@@ -77,6 +90,24 @@ fn word_help(w: &Word) -> String {
     let others = catalog().iter().filter(|o| o.kind == w.kind && o.name != w.name).map(|o| o.name);
     let see: Vec<&str> = if w.kind == Kind::ColorName { vec!["#", "rgb", "mix"] } else { others.collect() };
     out + &ending(w.example, &see)
+}
+
+/// Which words have a parameter of this name, and what it is to them; those to which it is the same stand together.
+fn parameter_help(name: &str) -> Option<String> {
+    let mut meanings: Vec<(String, Vec<&str>)> = Vec::new();
+    for word in catalog() {
+        let Some(p) = word.params.iter().find(|p| p.name == name && !p.rest) else { continue };
+        let meaning = format!("{}: {}", p.doc, takes(p));
+        match meanings.iter_mut().find(|(known, _)| *known == meaning) {
+            Some((_, words)) => words.push(word.name),
+            None => meanings.push((meaning, vec![word.name])),
+        }
+    }
+    let of_one = |(meaning, words): &(String, Vec<&str>)| {
+        format!("  {}      {}", wrapped(&words.join(", "), "  "), wrapped(meaning, "      "))
+    };
+    let text: String = meanings.iter().map(of_one).collect();
+    (!text.is_empty()).then(|| format!("`{name}: …` is given to:\n\n{text}"))
 }
 
 fn topic_help(t: &Topic) -> String {

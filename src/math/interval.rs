@@ -21,6 +21,8 @@ pub struct Interval<const MUTANT: u8 = 0> {
     pub hi: f64,
 }
 
+// The large operations are calls: only checks compute with them, and kernels hold hundreds, which would take long to compile.
+
 /// Operations whose bounds are rounded, as mutants count them: the lower bound is 2·op − 1, the upper 2·op.
 const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
@@ -125,7 +127,7 @@ impl<const MUTANT: u8> Neg for Interval<MUTANT> {
 }
 impl<const MUTANT: u8> Add for Interval<MUTANT> {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         Self::bounds(SUM, down(self.lo.two_sum(o.lo)), up(self.hi.two_sum(o.hi)))
     }
@@ -139,7 +141,7 @@ impl<const MUTANT: u8> Sub for Interval<MUTANT> {
 }
 impl<const MUTANT: u8> Mul for Interval<MUTANT> {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         let (lo, hi) = corners([self.lo, self.hi], [o.lo, o.hi], product);
         Self::bounds(PRODUCT, lo, hi)
@@ -147,7 +149,7 @@ impl<const MUTANT: u8> Mul for Interval<MUTANT> {
 }
 impl<const MUTANT: u8> Div for Interval<MUTANT> {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn div(self, o: Self) -> Self {
         if o.contains(0.0) {
             return Self::ALL;
@@ -168,6 +170,7 @@ impl<const MUTANT: u8> Real for Interval<MUTANT> {
     fn splat(x: f64) -> Self {
         Interval { lo: x, hi: x }
     }
+    #[inline(never)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         let (lo, _) = corners([self.lo, self.hi], [b.lo, b.hi], |x, y| fused(x, y, c.lo));
         let (_, hi) = corners([self.lo, self.hi], [b.lo, b.hi], |x, y| fused(x, y, c.hi));

@@ -4,6 +4,7 @@
 //! and the horizon, where w is 0, is a place like any other. Of curved ones w is 1.
 
 use super::super::material::Surfacing;
+use super::super::shape::primitive::surface_of_triangle;
 use super::super::shape::{Kind, Primitive, SIDE};
 use super::super::world::World;
 use super::bundle::{Bundle, Start};
@@ -64,7 +65,13 @@ impl<'w> Met<'w> {
             {
                 return Some(Met { n: face(n.map(Form::constant)), ..base });
             }
-            let surface = world.surface::<Form, false>(sheet.id, (ray.o, ray.d), (sheet.t, Form::constant(0.0)));
+            let surface = match primitive.kind {
+                Kind::Triangle(i) => surface_of_triangle::<Form>(world.tables(), i, ray.o, ray.d),
+                _ => {
+                    let (mesh, k) = world.triangle(sheet.id);
+                    mesh.surface(k, (ray.o, ray.d))
+                }
+            };
             let bent = flat.is_none().then_some(face(surface.ns));
             let local = three!(i => surface.local[i] * w);
             return Some(Met { n: face(surface.n), bent, local, ..base });

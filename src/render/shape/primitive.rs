@@ -130,13 +130,7 @@ impl Primitive {
         part: R,
     ) -> Surface<R> {
         if let Kind::Triangle(i) = self.kind {
-            let tri = &tables.triangles[i as usize];
-            // No `Option::map`: its closure may be compiled without the lanes' instructions.
-            let mut shading = None;
-            if let Some(s) = tri.shading {
-                shading = Some(each3!(s, n => splat3(n)));
-            }
-            return triangle::surface(Sides { v: each3!(tri.v, v => splat3(v)), n: splat3(tri.n), shading }, o, d);
+            return surface_of_triangle(tables, i, o, d);
         }
         let p = self.frame.localize::<R, AT_EYE>(tables.maps, o, d).at(t);
         let point = match &self.kind {
@@ -156,6 +150,18 @@ impl Primitive {
             local: point.p,
         }
     }
+}
+
+/// The surface of triangle number `i` where the ray meets it.
+#[inline(always)]
+pub fn surface_of_triangle<R: Real>(tables: Tables<'_>, i: u32, o: [R; 3], d: [R; 3]) -> Surface<R> {
+    let tri = &tables.triangles[i as usize];
+    // No `Option::map`: its closure may be compiled without the lanes' instructions.
+    let mut shading = None;
+    if let Some(s) = tri.shading {
+        shading = Some(each3!(s, n => splat3(n)));
+    }
+    triangle::surface(Sides { v: each3!(tri.v, v => splat3(v)), n: splat3(tri.n), shading }, o, d)
 }
 
 /// The origin of a ray that leaves `p` on the side of `n` for a positive `offset`, on the other for a negative one.
