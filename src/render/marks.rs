@@ -94,7 +94,7 @@ fn row_of_codes(row: &[[f32; 3]], (x, end): (usize, usize), codes: &mut Row) {
 pub struct Limits {
     /// Neighbours of which a channel differs by more codes of 8 bits.
     pub codes: u8,
-    /// As many passes are to be had.
+    /// As many passes pixels are to have.
     pub level: u8,
 }
 
@@ -137,9 +137,9 @@ pub fn mark(
             }
             let here = at * width + x..at * width + end;
             let (levels, differ) = (&marks.levels[here.clone()], differ.as_chunks::<3>().0);
-            for ((lacks, had), [r, g, b]) in marks.lacking[here].iter_mut().zip(levels).zip(differ) {
-                let differs = (*r.max(g).max(b) > limits.codes) | (*had > 0);
-                *lacks |= (*had < limits.level) & differs;
+            for ((lacks, level), [r, g, b]) in marks.lacking[here].iter_mut().zip(levels).zip(differ) {
+                let differs = (*r.max(g).max(b) > limits.codes) | (*level > 0);
+                *lacks |= (*level < limits.level) & differs;
                 *wanted |= *lacks;
             }
         }

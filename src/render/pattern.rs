@@ -112,7 +112,7 @@ impl PatternTable {
     #[inline(always)]
     pub fn eval<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
         match &self.nodes[id as usize] {
-            PatternNode::Constant(c) => splat3(*c),
+            // It has a way of its own from the shape's frame, and doesn't ask for the point in the space in which that was made.
             PatternNode::InSpace(child, space) => {
                 self.eval_at(*child, apply(&at.spaces[*space as usize], at.local), at)
             }
@@ -121,12 +121,16 @@ impl PatternTable {
     }
 
     /// The value of pattern `id` at `p` of the space that it stands in, which is the point `at` of the surface. Recursion is as deep as
-    /// patterns nest, which the language limits.
+    /// patterns nest, which the language limits. The commonest, constant colours, take no call.
+    #[inline(always)]
     fn eval_at<R: Lane>(&self, id: u32, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
-        R::vectorize(
-            #[inline(always)]
-            || self.eval_here(id, p, at),
-        )
+        match &self.nodes[id as usize] {
+            PatternNode::Constant(c) => splat3(*c),
+            _ => R::vectorize(
+                #[inline(always)]
+                || self.eval_here(id, p, at),
+            ),
+        }
     }
 
     #[inline(always)]
@@ -198,10 +202,10 @@ impl PatternTable {
                 )
             }
             PatternNode::Mix(a, b, by) => {
-                let share = self.child(*by, p, at);
+                let share = self.eval_at(*by, p, at);
                 self.lerp((*a, *b), share, p, at)
             }
-            PatternNode::Blend(stops, by) => self.blend(stops, self.child(*by, p, at)[0], p, at),
+            PatternNode::Blend(stops, by) => self.blend(stops, self.eval_at(*by, p, at)[0], p, at),
             PatternNode::InSpace(child, space) => {
                 self.eval_at(*child, apply(&at.spaces[*space as usize], at.local), at)
             }
@@ -218,15 +222,15 @@ impl PatternTable {
                 self.eval_at(*child, moved, at)
             }
             PatternNode::Add(a, b) => {
-                let (x, y) = (self.child(*a, p, at), self.child(*b, p, at));
+                let (x, y) = (self.eval_at(*a, p, at), self.eval_at(*b, p, at));
                 three!(i => x[i] + y[i])
             }
             PatternNode::Multiply(a, b) => {
-                let (x, y) = (self.child(*a, p, at), self.child(*b, p, at));
+                let (x, y) = (self.eval_at(*a, p, at), self.eval_at(*b, p, at));
                 three!(i => x[i] * y[i])
             }
             PatternNode::Within(child, least, most) => {
-                each3!(self.child(*child, p, at), x => x.max(R::splat(*least)).min(R::splat(*most)))
+                each3!(self.eval_at(*child, p, at), x => x.max(R::splat(*least)).min(R::splat(*most)))
             }
         }
     }
@@ -241,26 +245,17 @@ impl PatternTable {
     #[inline(always)]
     fn choose<R: Lane>(&self, m: R::Mask, (a, b): (u32, u32), p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         if !m.any() {
-            self.child(b, p, at)
+            self.eval_at(b, p, at)
         } else if !(!m).any() {
-            self.child(a, p, at)
+            self.eval_at(a, p, at)
         } else {
-            select3(m, self.child(a, p, at), self.child(b, p, at))
-        }
-    }
-
-    /// A pattern in the same space, without a call for the commonest: colours are mostly constants.
-    #[inline(always)]
-    fn child<R: Lane>(&self, id: u32, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
-        match &self.nodes[id as usize] {
-            PatternNode::Constant(c) => splat3(*c),
-            _ => self.eval_at(id, p, at),
+            select3(m, self.eval_at(a, p, at), self.eval_at(b, p, at))
         }
     }
 
     #[inline(always)]
     fn lerp<R: Lane>(&self, (a, b): (u32, u32), s: [R; 3], p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
-        let (a, b) = (self.child(a, p, at), self.child(b, p, at));
+        let (a, b) = (self.eval_at(a, p, at), self.eval_at(b, p, at));
         three!(i => (R::one() - s[i]) * a[i] + s[i] * b[i])
     }
 
@@ -268,14 +263,14 @@ impl PatternTable {
     fn blend<R: Lane>(&self, stops: &[u32], by: R, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         let last = stops.len() - 1;
         let x = clamp01(by) * R::splat(last as f64);
-        let mut out = self.child(stops[0], p, at);
+        let mut out = self.eval_at(stops[0], p, at);
         for (k, &stop) in stops.iter().enumerate().skip(1) {
             let s = x - R::splat(k as f64 - 1.0);
             let here = R::zero().lt(s);
             if !here.any() {
                 break;
             }
-            let (s, c) = (s.min(R::one()), self.child(stop, p, at));
+            let (s, c) = (s.min(R::one()), self.eval_at(stop, p, at));
             out = select3(here, three!(i => (R::one() - s) * out[i] + s * c[i]), out);
         }
         out

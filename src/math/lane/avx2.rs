@@ -129,7 +129,7 @@ macro_rules! register {
             }
             #[inline(always)]
             fn compress(self, m: $mask, dst: &mut [$elem]) {
-                const PACK: [[i32; 8]; 1 << $width] = packing::<$width, { 1 << $width }>();
+                static PACK: [[i32; 8]; 1 << $width] = packing::<$width, { 1 << $width }>();
                 unsafe {
                     let order = _mm256_loadu_si256(PACK[m.bits() as usize % (1 << $width)].as_ptr().cast());
                     let packed = $from_words(_mm256_permutevar8x32_ps($as_words(self.0), order));
