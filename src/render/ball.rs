@@ -81,11 +81,17 @@ impl Ball {
         Ball { centre, square }
     }
 
+    /// Whether there is a ball: of planes and triangles there is none.
+    #[inline(always)]
+    pub fn is_there(&self) -> bool {
+        self.square < f64::INFINITY
+    }
+
     /// Which rays, given by origin and direction, surely miss the primitive at every t > 0, and by far. Of each lane by itself: what
     /// it says of a ray is the same among whatever others.
     #[inline(always)]
     pub fn passed_by<R: Real, const AT_EYE: bool>(&self, (o, d): ([R; 3], [R; 3])) -> R::Mask {
-        if !(self.square < f64::INFINITY) {
+        if !self.is_there() {
             return R::Mask::splat(false);
         }
         let to = three!(i => {

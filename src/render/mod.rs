@@ -56,6 +56,7 @@ mod spawn;
 mod standing;
 mod supersampler;
 mod surface_pattern;
+mod sweep;
 mod taps;
 mod texture;
 mod tile;

@@ -6,6 +6,7 @@ use super::candidates::Candidates;
 use super::ray::Own;
 use super::shape::{Mesh, Visit};
 use super::span::{least, spread, stored};
+use super::sweep::sweep;
 use super::way::Way;
 use super::world::World;
 use crate::math::real::each3;
@@ -21,34 +22,18 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
     way: &mut Way,
 ) {
     for g in (0..rays.len).step_by(L::WIDTH) {
-        let d = load3::<L>(&rays.d, g);
-        let mut best = Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() };
-        if AT_EYE {
-            for &k in &candidates.ids {
-                best.test::<true>(world, k, ([L::zero(); 3], d), None);
-            }
-            if candidates.tree {
-                best.through_tree(world, &Start::at_eye(d), way);
-            }
-        } else {
-            let start = Start {
-                o: load3::<L>(&rays.o, g),
-                d,
-                primitive: L::load(&rays.source[g..]),
-                part: L::load(&rays.source_part[g..]),
-                outward: L::load(&rays.outward[g..]),
-                live: L::Mask::first((rays.len - g).min(L::WIDTH)),
-            };
-            if !candidates.ids.is_empty() {
-                best.test_all(world, &candidates.ids, &start);
-            }
-            if candidates.tree {
-                best.through_tree(world, &start, way);
-            }
-        }
-        best.t.store(&mut hits.t[g..]);
-        best.id.store(&mut hits.id[g..]);
-        best.part.store(&mut hits.part[g..]);
+        Nearest::<L>::none().store(hits, g);
+    }
+    for &k in &candidates.ids {
+        sweep::<L, AT_EYE>(world, k, rays, hits);
+    }
+    if !candidates.tree {
+        return;
+    }
+    for g in (0..rays.len).step_by(L::WIDTH) {
+        let mut best = Nearest::<L>::load(hits, g);
+        best.through_tree(world, &Start::of::<AT_EYE>(rays, g), way);
+        best.store(hits, g);
     }
 }
 
@@ -65,35 +50,80 @@ struct Start<R: Real> {
     live: R::Mask,
 }
 
-impl<R: Real> Start<R> {
+impl<L: Lane> Start<L> {
+    /// The rays of a batch from number `g` on.
     #[inline(always)]
-    fn at_eye(d: [R; 3]) -> Start<R> {
+    fn of<const AT_EYE: bool>(rays: &RayBatch<L::Elem>, g: usize) -> Start<L> {
+        let d = load3::<L>(&rays.d, g);
+        if AT_EYE {
+            let live = Mask::splat(true);
+            return Start {
+                o: [L::zero(); 3],
+                d,
+                primitive: L::splat(NONE),
+                part: L::zero(),
+                outward: L::zero(),
+                live,
+            };
+        }
         Start {
-            o: [R::zero(); 3],
+            o: load3::<L>(&rays.o, g),
             d,
-            primitive: R::splat(NONE),
-            part: R::zero(),
-            outward: R::zero(),
-            live: Mask::splat(true),
+            primitive: L::load(&rays.source[g..]),
+            part: L::load(&rays.source_part[g..]),
+            outward: L::load(&rays.outward[g..]),
+            live: L::Mask::first((rays.len - g).min(L::WIDTH)),
         }
     }
 }
 
 /// Keeps the nearest crossing; of two at the same t, that of the primitive with the lower number.
 #[derive(Clone, Copy)]
-struct Nearest<R> {
+pub struct Nearest<R> {
     t: R,
     id: R,
     part: R,
-    current: R,
+    /// The surface that is tested.
+    pub current: R,
 }
 
 impl<L: Lane> Nearest<L> {
+    /// Nothing found yet.
+    #[inline(always)]
+    fn none() -> Nearest<L> {
+        Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() }
+    }
+
+    /// What the rays from number `g` on met so far.
+    #[inline(always)]
+    pub fn load(hits: &HitColumns<L::Elem>, g: usize) -> Nearest<L> {
+        Nearest {
+            t: L::load(&hits.t[g..]),
+            id: L::load(&hits.id[g..]),
+            part: L::load(&hits.part[g..]),
+            current: L::zero(),
+        }
+    }
+
+    /// Writes it there.
+    #[inline(always)]
+    pub fn store(&self, hits: &mut HitColumns<L::Elem>, g: usize) {
+        self.t.store(&mut hits.t[g..]);
+        self.id.store(&mut hits.id[g..]);
+        self.part.store(&mut hits.part[g..]);
+    }
+
+    /// Tests surface `k` with the rays of a batch from number `g` on.
+    #[inline(always)]
+    pub fn test_from<const AT_EYE: bool>(&mut self, world: &World, k: u32, rays: &RayBatch<L::Elem>, g: usize) {
+        self.test_all(world, &[k], &Start::of::<AT_EYE>(rays, g));
+    }
+
     /// Tests surface `k`.
     #[inline(always)]
-    fn test<const AT_EYE: bool>(&mut self, world: &World, k: u32, ray: ([L; 3], [L; 3]), own: Option<Own<L>>) {
+    fn test(&mut self, world: &World, k: u32, ray: ([L; 3], [L; 3]), own: Option<Own<L>>) {
         self.current = L::splat(k as f64);
-        world.crossings::<L, AT_EYE>(k, ray, own, self);
+        world.crossings::<L, false>(k, ray, own, self);
     }
 
     /// Tests surfaces, in a function of its own: kernels are large.
@@ -116,7 +146,7 @@ impl<L: Lane> Nearest<L> {
                 continue;
             }
             let own = Own::of(here, start.part, outward);
-            self.test::<false>(world, k, (start.o, start.d), own);
+            self.test(world, k, (start.o, start.d), own);
         }
     }
 

@@ -26,7 +26,12 @@ pub struct Run {
     pub groups: Vec<LaneGroup>,
     /// How many they are.
     pub count: usize,
+    /// The one surface that all of them met; [`MANY`] where that isn't one.
+    pub only: u32,
 }
+
+/// [`Run::only`] of rays that met several surfaces: no surface's number.
+pub const MANY: u32 = u32::MAX;
 
 impl Run {
     /// Adds rays; those of one register in one go after another.
@@ -40,9 +45,10 @@ impl Run {
         }
     }
 
-    fn clear(&mut self) {
+    fn begin(&mut self, only: u32) {
         self.groups.clear();
         self.count = 0;
+        self.only = only;
     }
 
     /// Whether most places of its registers are empty, so that packing pays.
@@ -51,8 +57,9 @@ impl Run {
     }
 
     /// `count` rays from the first on.
-    pub fn whole(&mut self, count: usize, width: usize) {
-        self.clear();
+    #[inline(always)]
+    pub fn whole(&mut self, count: usize, width: usize, only: u32) {
+        self.begin(only);
         for first in (0..count).step_by(width) {
             self.add(first, lanes_below(count - first, width));
         }
@@ -90,8 +97,21 @@ impl Runs {
     /// Sorts the first `n` rays by what they met.
     #[inline(always)]
     pub fn sort<L: Lane>(&mut self, world: &World, ids: &Column<L::Elem>, n: usize) {
-        self.missed.clear();
+        self.missed.begin(MANY);
         self.used = 0;
+        if n == 0 {
+            return;
+        }
+        // Mostly all of a batch met the same.
+        let first_id = ids[0].to_f64();
+        if is_all::<L>(ids, n, first_id) {
+            let (run, only) = match first_id == NONE {
+                true => (&mut self.missed, MANY),
+                false => (self.run_of(world.flock(first_id as u32), first_id as u32), first_id as u32),
+            };
+            run.whole(n, L::WIDTH, only);
+            return;
+        }
         let none = L::splat(NONE);
         for first in (0..n).step_by(L::WIDTH) {
             let id = L::load(&ids[first..]);
@@ -102,33 +122,50 @@ impl Runs {
             }
             let mut rest = all & !missed;
             while rest != 0 {
-                let one = ids[first + rest.trailing_zeros() as usize];
-                let here = id.same(L::splat(one.to_f64())).bits() & rest;
-                self.run_of(world.flock(one.to_f64() as u32)).add(first, here);
+                let one = ids[first + rest.trailing_zeros() as usize].to_f64();
+                let here = id.same(L::splat(one)).bits() & rest;
+                let run = self.run_of(world.flock(one as u32), one as u32);
+                if run.only != one as u32 {
+                    run.only = MANY;
+                }
+                run.add(first, here);
                 rest &= !here;
             }
         }
     }
 
     #[inline(always)]
-    fn run_of(&mut self, flock: u32) -> &mut Run {
+    fn run_of(&mut self, flock: u32, id: u32) -> &mut Run {
         let known = self.run_of[flock as usize] as usize;
         if known < self.used && self.runs[known].flock == flock {
             return &mut self.runs[known];
         }
-        self.new_run(flock)
+        self.new_run(flock, id)
     }
 
     #[inline(never)]
-    fn new_run(&mut self, flock: u32) -> &mut Run {
+    fn new_run(&mut self, flock: u32, id: u32) -> &mut Run {
         if self.used == self.runs.len() {
             self.runs.push(Run::default()); // once for the most that a batch has had
         }
         self.run_of[flock as usize] = self.used as u32;
         self.used += 1;
         let run = &mut self.runs[self.used - 1];
-        run.clear();
+        run.begin(id);
         run.flock = flock;
         run
     }
+}
+
+/// Whether the first `n` of `ids` are all `id`.
+#[inline(always)]
+fn is_all<L: Lane>(ids: &Column<L::Elem>, n: usize, id: f64) -> bool {
+    let id = L::splat(id);
+    for first in (0..n).step_by(L::WIDTH) {
+        let all = lanes_below(n - first, L::WIDTH);
+        if L::load(&ids[first..]).same(id).bits() & all != all {
+            return false;
+        }
+    }
+    true
 }

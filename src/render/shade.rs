@@ -14,10 +14,11 @@ use super::pattern_point::{PatternPoint, Rows};
 use super::place::RESIDUE;
 use super::run::LaneGroup;
 use super::shape::primitive::spawn_point;
-use super::shape::{Kind, Mesh, Surface};
+use super::shape::{Kind, Mesh, Primitive, Surface};
 use super::span::Span;
 use super::spawn::{Children, Leaving};
 use super::surface_pattern::{PatternFrame, bumped};
+use super::sweep::with_known;
 use super::world::World;
 use crate::math::real::{Mask, dot, minus, scaled, select3, splat3, three};
 use crate::math::{Elem, Lane};
@@ -27,6 +28,8 @@ use crate::math::{Elem, Lane};
 pub struct Hits<'a, E: Elem> {
     /// The primitive that stands for all that were met.
     pub flock: u32,
+    /// The one surface that all of them met, or [`MANY`].
+    pub only: u32,
     /// The rays.
     pub rays: &'a RayBatch<E>,
     /// What they met.
@@ -83,7 +86,11 @@ pub fn shade<L: Lane, const AT_EYE: bool>(
         _ => None,
     };
     let run = RunOfHits { world, surfacing, frame, bent, hits, mesh };
-    let points = run.surfaces::<L, AT_EYE>(s);
+    // Asked once for all, where there is one: see `sweep`.
+    let points = match world.primitives.get(hits.only as usize) {
+        Some(primitive) => with_known!(primitive, known => run.surfaces_of::<L, AT_EYE>(known, s)),
+        None => run.surfaces::<L, AT_EYE>(s),
+    };
     if surfacing.lit {
         if s.recorder.is_on() {
             s.recorder.lit(points);
@@ -106,6 +113,27 @@ struct RunOfHits<'a, E: Elem> {
 }
 
 impl<E: Elem> RunOfHits<'_, E> {
+    /// Points, normals and offsets of all hits, which lie on one `primitive`; gives a box around the points.
+    #[inline(always)]
+    fn surfaces_of<L: Lane<Elem = E>, const AT_EYE: bool>(
+        &self,
+        primitive: &Primitive,
+        s: &mut ShadeScratch<E>,
+    ) -> Bounds {
+        let (rays, hits, tables) = (self.hits.rays, self.hits.hits, self.world.tables());
+        let mut points = Span::<L>::new();
+        for group in self.hits.groups {
+            let g = group.first as usize;
+            let d = load3::<L>(&rays.d, g);
+            let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
+            let (t, part) = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
+            let surface = primitive.surface::<L, AT_EYE>(tables, o, d, t, part);
+            points.hold(L::Mask::from_bits(group.bits), surface.p);
+            self.keep(g, d, &surface, s);
+        }
+        points.bounds()
+    }
+
     /// Points, normals and offsets of all hits; gives a box around the points.
     #[inline(always)]
     fn surfaces<L: Lane<Elem = E>, const AT_EYE: bool>(&self, s: &mut ShadeScratch<E>) -> Bounds {

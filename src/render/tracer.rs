@@ -166,13 +166,13 @@ impl<'w, L: Lane> Tracer<'w, L> {
             let packed = run.is_sparse(L::WIDTH);
             if packed {
                 pack::<L>(&at.rays, &at.hits, run, &mut at.run, &mut at.run_hits);
-                self.packed.whole(run.count, L::WIDTH);
+                self.packed.whole(run.count, L::WIDTH, run.only);
             }
             gathered.in_order = level == 0 && !packed;
             let (rays, hits) = if packed { (&at.run, &at.run_hits) } else { (&at.rays, &at.hits) };
             let groups: &[LaneGroup] = if packed { &self.packed.groups } else { &run.groups };
             let spawn = level < self.max_depth;
-            let hits = Hits { flock: run.flock, rays, hits, groups };
+            let hits = Hits { flock: run.flock, only: run.only, rays, hits, groups };
             let (mirrored, transmitted) = (&mut at.mirrored, &mut at.transmitted);
             let children = Children { mirrored, transmitted, spawn, faint: &mut self.faint };
             L::vectorize(

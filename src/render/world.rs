@@ -234,7 +234,7 @@ impl World {
 
     /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.
     #[inline(always)]
-    fn confines(&self, id: u32) -> Option<&Bounds> {
+    pub(super) fn confines(&self, id: u32) -> Option<&Bounds> {
         if self.extremes.is_empty() {
             return None;
         }

@@ -1,0 +1,117 @@
+//! One surface against many registers of rays: what kind of shape it is, and how it stands, is asked once and not for each register.
+//!
+//! A kernel is some tens of instructions for a register of rays. To find out which kernel it is, where the shape stands, which ball is
+//! around it and whether its crossings are confined takes as many again. So a list of candidates is gone through surface by
+//! surface, each against the whole batch, in a loop that is compiled for its kind.
+
+use super::ball::Ball;
+use super::batch::{HitColumns, RayBatch, load3};
+use super::confine::Confined;
+use super::nearest::Nearest;
+use super::ray::Own;
+use super::shape::Primitive;
+use super::shape::primitive::Tables;
+use super::world::World;
+use crate::math::{Lane, Mask};
+
+/// Does `$body` with `$known`, a primitive that equals `$primitive`: where its axes are the world's, as they mostly are, once for each kind
+/// of shape, and there the compiler knows both. A macro, for a closure isn't surely inlined.
+macro_rules! with_known {
+    ($primitive:expr, $known:ident => $body:expr) => {{
+        use crate::render::frame::{Axes, Frame};
+        use crate::render::shape::{Kind, Primitive};
+        let primitive: &Primitive = $primitive;
+        let upright = Frame { axes: Axes::Cyclic(0), ..primitive.frame };
+        macro_rules! of_kind {
+            ($kind:expr) => {{
+                let $known = &Primitive { kind: $kind, frame: upright, ..*primitive };
+                $body
+            }};
+        }
+        match (primitive.kind, primitive.frame.axes) {
+            (Kind::Sphere(r), Axes::Cyclic(0)) => of_kind!(Kind::Sphere(r)),
+            (Kind::Plane, Axes::Cyclic(0)) => of_kind!(Kind::Plane),
+            (Kind::Cuboid(half), Axes::Cyclic(0)) => of_kind!(Kind::Cuboid(half)),
+            (Kind::Tube(tube), Axes::Cyclic(0)) => of_kind!(Kind::Tube(tube)),
+            (Kind::Triangle(i), _) => of_kind!(Kind::Triangle(i)),
+            _ => {
+                let $known = primitive;
+                $body
+            }
+        }
+    }};
+}
+pub(super) use with_known;
+
+/// Tests surface `k` against every ray of a batch. `AT_EYE` says that all origins are exactly 0.
+#[inline(always)]
+pub fn sweep<L: Lane, const AT_EYE: bool>(
+    world: &World,
+    k: u32,
+    rays: &RayBatch<L::Elem>,
+    hits: &mut HitColumns<L::Elem>,
+) {
+    match world.primitives.get(k as usize) {
+        Some(primitive) if world.confines(k).is_none() => {
+            let ball = world.ball(k).filter(Ball::is_there);
+            with_known!(primitive, known => {
+                let one = One { tables: world.tables(), primitive: known, k, ball };
+                one.against::<L, AT_EYE>(rays, hits);
+            });
+        }
+        _ => {
+            for g in (0..rays.len).step_by(L::WIDTH) {
+                let mut best = Nearest::<L>::load(hits, g);
+                best.test_from::<AT_EYE>(world, k, rays, g);
+                best.store(hits, g);
+            }
+        }
+    }
+}
+
+/// A surface, and what rays are told of it.
+struct One<'w> {
+    tables: Tables<'w>,
+    primitive: &'w Primitive,
+    k: u32,
+    /// Around it.
+    ball: Option<Ball>,
+}
+
+impl One<'_> {
+    #[inline(always)]
+    fn against<L: Lane, const AT_EYE: bool>(&self, rays: &RayBatch<L::Elem>, hits: &mut HitColumns<L::Elem>) {
+        let number = L::splat(self.k as f64);
+        for g in (0..rays.len).step_by(L::WIDTH) {
+            let d = load3::<L>(&rays.d, g);
+            let (mut o, mut own) = ([L::zero(); 3], None);
+            if !AT_EYE {
+                o = load3::<L>(&rays.o, g);
+                let here = L::load(&rays.source[g..]).same(number);
+                if here.any() {
+                    let outward = L::one().same(L::load(&rays.outward[g..]));
+                    let live = L::Mask::first((rays.len - g).min(L::WIDTH));
+                    if self.primitive.kind.is_left_for_good() && !(live & !(here & outward)).any() {
+                        continue;
+                    }
+                    own = Own::of(here, L::load(&rays.source_part[g..]), outward);
+                }
+            }
+            let mut met = L::Mask::splat(true);
+            if let Some(ball) = &self.ball {
+                met = !ball.passed_by::<L, AT_EYE>((o, d));
+                if let Some(own) = &own {
+                    met = met | own.here; // what went in must come out, wherever rounding puts the start
+                }
+                if !met.any() {
+                    continue;
+                }
+            }
+            let mut best = Nearest::load(hits, g);
+            best.current = number;
+            let visit = &mut Confined::new(met, None, (o, d), &mut best);
+            self.primitive.crossings::<L, AT_EYE>(self.tables, o, d, own, visit);
+            best.store(hits, g);
+        }
+    }
+}
