@@ -118,7 +118,7 @@ fn pattern_digest(scene: &Scene, kind: &PatternKind, before: &[u64]) -> u64 {
         K::Blend { stops, .. } => numbers(11, &[stops.len() as f64]),
         K::Transformed { parent_from_child, .. } => {
             let rows = super::material::rows(parent_from_child);
-            numbers(12, rows.as_flattened())
+            numbers(12, rows.rows.as_flattened())
         }
         K::Turbulence { amount, octaves, seed, .. } => numbers(13, &[*amount, *octaves as f64]).with(*seed),
         K::Add(..) => numbers(14, &[]),

@@ -19,7 +19,7 @@ impl<E: Elem> Gathered<'_, E> {
     /// Adds the value of each ray of `group` to its pixel, by `slots`.
     #[inline(always)]
     pub fn add<L: Lane<Elem = E>>(&mut self, group: &LaneGroup, slots: &Column<E>, value: [L; 3]) {
-        let g = group.first as usize;
+        let g = group.place();
         if self.first && self.in_order {
             let m = L::Mask::from_bits(group.bits);
             let whole = group.bits.count_ones() as usize == L::WIDTH;

@@ -131,6 +131,27 @@ pub fn occlusion<L: Lane>(
     dimmed(world, rays, seen, scratch, recorder)
 }
 
+/// The share of light, by channel, that the transparent surfaces `ids` let through to the lanes of `open`, which nothing opaque
+/// stands before.
+#[inline(always)]
+pub fn dimmed_by<L: Lane>(
+    world: &World,
+    ids: &[u32],
+    rays: &ShadowRays<'_, L>,
+    open: L::Mask,
+    scratch: &mut Shadow,
+    recorder: &mut Recorder,
+) -> [L; 3] {
+    scratch.transparent.clear();
+    for &k in ids {
+        if !(rays.left_for_good(world, k, open) || rays.pass_by(world, k, open)) {
+            scratch.transparent.push(k);
+        }
+    }
+    let seen = select3(open, [L::one(); 3], [L::zero(); 3]);
+    if scratch.transparent.is_empty() { seen } else { dimmed(world, rays, seen, scratch, recorder) }
+}
+
 /// What the transparent surfaces leave of `seen`.
 #[inline(always)]
 fn dimmed<L: Lane>(

@@ -352,7 +352,7 @@ impl<'s> MaterialCompiler<'s> {
 /// The rows of a map, rounded.
 pub fn rows(map: &Affine) -> Rows {
     let (l, s) = (map.linear_f64(), map.shift_f64());
-    std::array::from_fn(|r| [l[r][0], l[r][1], l[r][2], s[r]])
+    Rows::new(std::array::from_fn(|r| [l[r][0], l[r][1], l[r][2], s[r]]))
 }
 
 /// About how small the smallest feature of a pattern is, given those of the patterns before it.

@@ -4,6 +4,7 @@ use super::batch::{HitColumns, NONE, PADDING, RayBatch, load3};
 use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
 use super::ray::Own;
+use super::run::place;
 use super::shape::{Mesh, Visit};
 use super::span::{least, spread, stored};
 use super::sweep::sweep;
@@ -21,8 +22,11 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
     hits: &mut HitColumns<L::Elem>,
     way: &mut Way,
 ) {
-    for g in (0..rays.len).step_by(L::WIDTH) {
-        Nearest::<L>::none().store(hits, g);
+    let by_tree_alone = candidates.tree && candidates.ids.is_empty();
+    if !by_tree_alone {
+        for g in (0..rays.len).step_by(L::WIDTH) {
+            Nearest::<L>::none().store(hits, place(g));
+        }
     }
     for &k in &candidates.ids {
         sweep::<L, AT_EYE>(world, k, rays, hits);
@@ -31,7 +35,7 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
         return;
     }
     for g in (0..rays.len).step_by(L::WIDTH) {
-        let mut best = Nearest::<L>::load(hits, g);
+        let mut best = if by_tree_alone { Nearest::none() } else { Nearest::<L>::load(hits, g) };
         best.through_tree(world, &Start::of::<AT_EYE>(rays, g), way);
         best.store(hits, g);
     }

@@ -111,12 +111,28 @@ impl PatternTable {
     /// The value of pattern `id`.
     #[inline(always)]
     pub fn eval<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+        let (id, p) = self.outermost(id, at);
+        self.eval_at(id, p, at)
+    }
+
+    /// The same for a loop over many points: the commonest patterns are evaluated in it, without a call.
+    #[inline(always)]
+    pub fn eval_in_loop<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> [R; 3] {
+        let (id, p) = self.outermost(id, at);
+        match &self.nodes[id as usize] {
+            PatternNode::Checker(a, b, size) => self.checker((*a, *b), *size, p, at),
+            PatternNode::Stripes(a, b, axis, size) => self.stripes((*a, *b), *axis, *size, p, at),
+            _ => self.eval_at(id, p, at),
+        }
+    }
+
+    /// What has to be evaluated for pattern `id`, and where.
+    #[inline(always)]
+    fn outermost<R: Lane>(&self, id: u32, at: &PatternPoint<'_, R>) -> (u32, [R; 3]) {
         match &self.nodes[id as usize] {
             // It has a way of its own from the shape's frame, and doesn't ask for the point in the space in which that was made.
-            PatternNode::InSpace(child, space) => {
-                self.eval_at(*child, apply(&at.spaces[*space as usize], at.local), at)
-            }
-            _ => self.eval_at(id, at.made(), at),
+            PatternNode::InSpace(child, space) => (*child, apply(&at.spaces[*space as usize], at.local)),
+            _ => (id, at.made()),
         }
     }
 
@@ -137,14 +153,8 @@ impl PatternTable {
     fn eval_here<R: Lane>(&self, id: u32, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
         match &self.nodes[id as usize] {
             PatternNode::Constant(c) => splat3(*c),
-            PatternNode::Checker(a, b, size) => {
-                let s = R::splat(*size);
-                let [x, y, z] = each3!(p, x => (x / s).floor());
-                self.by_parity((*a, *b), x + y + z, p, at)
-            }
-            PatternNode::Stripes(a, b, axis, size) => {
-                self.by_parity((*a, *b), (p[*axis as usize] / R::splat(*size)).floor(), p, at)
-            }
+            PatternNode::Checker(a, b, size) => self.checker((*a, *b), *size, p, at),
+            PatternNode::Stripes(a, b, axis, size) => self.stripes((*a, *b), *axis, *size, p, at),
             PatternNode::Rings(a, b, axis, size) => {
                 let (i, j) = ((*axis as usize + 1) % 3, (*axis as usize + 2) % 3);
                 let rho = (p[i] * p[i] + p[j] * p[j]).sqrt();
@@ -233,6 +243,18 @@ impl PatternTable {
                 each3!(self.eval_at(*child, p, at), x => x.max(R::splat(*least)).min(R::splat(*most)))
             }
         }
+    }
+
+    #[inline(always)]
+    fn checker<R: Lane>(&self, both: (u32, u32), size: f64, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+        let s = R::splat(size);
+        let [x, y, z] = each3!(p, x => (x / s).floor());
+        self.by_parity(both, x + y + z, p, at)
+    }
+
+    #[inline(always)]
+    fn stripes<R: Lane>(&self, both: (u32, u32), axis: u8, size: f64, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+        self.by_parity(both, (p[axis as usize] / R::splat(size)).floor(), p, at)
     }
 
     #[inline(always)]

@@ -1,9 +1,24 @@
 //! The point of a surface at which a pattern is asked for, and the maps from there to the spaces that patterns stand in.
 
-use crate::math::real::{Real, dot, each3, scaled, splat3};
+use crate::math::real::{Real, dot, each3, scaled, splat3, three};
 
-/// Rows of a map: three factors and an addend each.
-pub type Rows = [[f64; 4]; 3];
+/// A map, by rows.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rows {
+    /// Three factors and an addend each.
+    pub rows: [[f64; 4]; 3],
+    /// Whether it only moves points, as the map to a pattern's space mostly does.
+    is_shift: bool,
+}
+
+impl Rows {
+    /// The map with these rows.
+    pub fn new(rows: [[f64; 4]; 3]) -> Rows {
+        let [x, y, z] = &rows;
+        let (diagonal, off) = ([x[0], y[1], z[2]], [x[1], x[2], y[0], y[2], z[0], z[1]]);
+        Rows { rows, is_shift: diagonal == [1.0; 3] && off == [0.0; 6] }
+    }
+}
 
 /// A point of a surface at which patterns are evaluated. What but few of them ask for is found when they do.
 #[derive(Clone, Copy)]
@@ -54,9 +69,10 @@ impl<R: Real> PatternPoint<'_, R> {
     #[inline(always)]
     pub fn around_centre(&self) -> [R; 3] {
         match (self.detail, self.spaces.first()) {
-            (Some(detail), Some([x, y, z])) => {
+            (Some(detail), Some(Rows { rows, is_shift })) => {
                 let shift = detail.from_centre;
-                apply(&[(x, 0), (y, 1), (z, 2)].map(|(r, i)| [r[0], r[1], r[2], shift[i]]), self.local)
+                let rows = three!(i => [rows[i][0], rows[i][1], rows[i][2], shift[i]]);
+                apply(&Rows { rows, is_shift: *is_shift }, self.local)
             }
             _ => self.made(),
         }
@@ -72,6 +88,9 @@ pub fn turned<R: Real>(map: &[[f64; 3]; 3], n: [R; 3]) -> [R; 3] {
 
 /// The image of a point.
 #[inline(always)]
-pub fn apply<R: Real>(rows: &Rows, p: [R; 3]) -> [R; 3] {
-    each3!(*rows, [x, y, z, w] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
+pub fn apply<R: Real>(map: &Rows, p: [R; 3]) -> [R; 3] {
+    if map.is_shift {
+        return three!(i => p[i] + R::splat(map.rows[i][3])); // the same to the bit: 1·x + 0·y is x
+    }
+    each3!(map.rows, [x, y, z, w] => (R::splat(x) * p[0] + R::splat(y) * p[1]) + (R::splat(z) * p[2] + R::splat(w)))
 }

@@ -3,7 +3,7 @@
 //! Neighbouring rays mostly meet the same thing, so most registers belong to one run. Where a run is sparse, as behind a mirror
 //! ball, it is packed first.
 
-use super::batch::{Column, NONE};
+use super::batch::{Column, MOST, NONE};
 use super::world::World;
 use crate::math::real::Mask;
 use crate::math::{Elem, Lane};
@@ -33,6 +33,20 @@ pub struct Run {
 /// [`Run::only`] of rays that met several surfaces: no surface's number.
 pub const MANY: u32 = u32::MAX;
 
+impl LaneGroup {
+    /// The place of the first ray in a column. Never beyond what a column holds, so that no access has to check it again.
+    #[inline(always)]
+    pub fn place(&self) -> usize {
+        place(self.first as usize)
+    }
+}
+
+/// A ray's number, known to be within a batch.
+#[inline(always)]
+pub fn place(number: usize) -> usize {
+    if number < MOST { number } else { MOST }
+}
+
 impl Run {
     /// Adds rays; those of one register in one go after another.
     #[inline(always)]
@@ -60,8 +74,11 @@ impl Run {
     #[inline(always)]
     pub fn whole(&mut self, count: usize, width: usize, only: u32) {
         self.begin(only);
-        for first in (0..count).step_by(width) {
-            self.add(first, lanes_below(count - first, width));
+        self.count = count;
+        let all = lanes_below(width, width);
+        self.groups.extend((0..count.div_ceil(width)).map(|i| LaneGroup { first: (i * width) as u32, bits: all }));
+        if let Some(last) = self.groups.last_mut() {
+            last.bits = lanes_below(count - last.first as usize, width);
         }
     }
 }
@@ -161,11 +178,12 @@ impl Runs {
 #[inline(always)]
 fn is_all<L: Lane>(ids: &Column<L::Elem>, n: usize, id: f64) -> bool {
     let id = L::splat(id);
-    for first in (0..n).step_by(L::WIDTH) {
-        let all = lanes_below(n - first, L::WIDTH);
-        if L::load(&ids[first..]).same(id).bits() & all != all {
+    let whole = n / L::WIDTH * L::WIDTH;
+    for first in (0..whole).step_by(L::WIDTH) {
+        if (!L::load(&ids[place(first)..]).same(id)).any() {
             return false;
         }
     }
-    true
+    let rest = lanes_below(n - whole, L::WIDTH);
+    rest == 0 || L::load(&ids[place(whole)..]).same(id).bits() & rest == rest
 }

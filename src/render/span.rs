@@ -25,6 +25,13 @@ impl<L: Lane> Span<L> {
         self.hi = three!(c => L::select(live, p[c].max(self.hi[c]), self.hi[c]));
     }
 
+    /// Holds all of the points too, none of which is a NaN's.
+    #[inline(always)]
+    pub fn hold_all(&mut self, p: [L; 3]) {
+        self.lo = three!(c => p[c].min(self.lo[c]));
+        self.hi = three!(c => p[c].max(self.hi[c]));
+    }
+
     /// The box around all.
     #[inline(always)]
     pub fn bounds(&self) -> Bounds {

@@ -23,7 +23,7 @@ impl<'w> PatternFrame<'w> {
             space => Some(&world.spaces[space as usize]),
         };
         if let Some(made) = made {
-            spaces.resize(world.patterns.spaces.len(), [[0.0; 4]; 3]);
+            spaces.resize(world.patterns.spaces.len(), Rows::default());
             let by_corners = matches!(primitive.kind, Kind::Triangle(_));
             for &k in surfacing.spaces.iter() {
                 let map = world.patterns.spaces[k as usize].compose(&made.made_from_local);
@@ -80,7 +80,8 @@ impl<'w> PatternFrame<'w> {
 /// Takes the rounding error of rotations out of a map: entries far below the largest of their row become 0. The coordinate of
 /// a flat face that lies along a cell boundary is then one number all over the face, and no speckle can arise. A
 /// triangle's frame is made of its edges, so there the largest entry of all decides.
-fn without_residue(mut rows: Rows, by_corners: bool) -> Rows {
+fn without_residue(map: Rows, by_corners: bool) -> Rows {
+    let mut rows = map.rows;
     let largest = |r: &[f64]| r.iter().fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
     let of_all = rows.iter().map(|r| largest(&r[..3])).fold(0.0, |m: f64, x| if x > m { x } else { m });
     for row in &mut rows {
@@ -91,7 +92,7 @@ fn without_residue(mut rows: Rows, by_corners: bool) -> Rows {
             }
         }
     }
-    rows
+    Rows::new(rows)
 }
 
 /// The normal `ns` tilted by the slope of the height pattern: n − ∇h along the surface, in the space in which the shape was

@@ -9,6 +9,7 @@ use super::batch::{HitColumns, RayBatch, load3};
 use super::confine::Confined;
 use super::nearest::Nearest;
 use super::ray::Own;
+use super::run::place;
 use super::shape::Primitive;
 use super::shape::primitive::Tables;
 use super::world::World;
@@ -83,6 +84,7 @@ impl One<'_> {
     fn against<L: Lane, const AT_EYE: bool>(&self, rays: &RayBatch<L::Elem>, hits: &mut HitColumns<L::Elem>) {
         let number = L::splat(self.k as f64);
         for g in (0..rays.len).step_by(L::WIDTH) {
+            let g = place(g);
             let d = load3::<L>(&rays.d, g);
             let (mut o, mut own) = ([L::zero(); 3], None);
             if !AT_EYE {

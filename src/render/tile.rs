@@ -200,12 +200,14 @@ impl<'w, L: Lane> TileWorker<'w, L> {
         batch.len = width * height;
         for py in 0..height {
             let (right, base) = self.grid.row((top + py as f64) + oy);
-            let columns = if parallel { &mut batch.o } else { &mut batch.d };
-            for c in 0..3 {
-                let row = &mut columns[c][py * width..][..width];
-                for (to, sx) in row.iter_mut().zip(&self.across) {
-                    *to = L::Elem::from_f64(right[c].mul_add(*sx, base[c]));
-                }
+            let [a, b, c] = if parallel { &mut batch.o } else { &mut batch.d };
+            let row = py * width..(py + 1) * width;
+            let (a, b, c) = (&mut a[row.clone()], &mut b[row.clone()], &mut c[row]);
+            // One loop for all three: rows are short, and beginning a loop costs as much as a few of its turns.
+            for (((a, b), c), sx) in a.iter_mut().zip(b).zip(c).zip(&self.across) {
+                *a = L::Elem::from_f64(right[0].mul_add(*sx, base[0]));
+                *b = L::Elem::from_f64(right[1].mul_add(*sx, base[1]));
+                *c = L::Elem::from_f64(right[2].mul_add(*sx, base[2]));
             }
         }
     }

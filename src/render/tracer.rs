@@ -12,7 +12,8 @@ use super::gathered::Gathered;
 use super::nearest::nearest;
 use super::options::RayCounts;
 use super::run::{LaneGroup, Run, Runs};
-use super::shade::{Hits, ShadeScratch, shade};
+use super::run_of_hits::Hits;
+use super::shade::{ShadeScratch, shade};
 use super::spawn::{Children, Faint};
 use super::way::Way;
 use super::world::World;
@@ -172,22 +173,11 @@ impl<'w, L: Lane> Tracer<'w, L> {
             let (rays, hits) = if packed { (&at.run, &at.run_hits) } else { (&at.rays, &at.hits) };
             let groups: &[LaneGroup] = if packed { &self.packed.groups } else { &run.groups };
             let spawn = level < self.max_depth;
-            let hits = Hits { flock: run.flock, only: run.only, rays, hits, groups };
+            let hits = Hits { flock: run.flock, only: run.only, rays, hits, groups, count: run.count };
             let (mirrored, transmitted) = (&mut at.mirrored, &mut at.transmitted);
             let children = Children { mirrored, transmitted, spawn, faint: &mut self.faint };
-            L::vectorize(
-                #[inline(always)]
-                || {
-                    shade::<L, AT_EYE>(
-                        self.world,
-                        hits,
-                        &mut self.scratch,
-                        &mut gathered,
-                        children,
-                        &mut self.counts.shadow,
-                    )
-                },
-            );
+            let shadow_rays = &mut self.counts.shadow;
+            shade::<L, AT_EYE>(self.world, hits, &mut self.scratch, &mut gathered, children, shadow_rays);
         }
     }
 }
@@ -196,7 +186,7 @@ impl<'w, L: Lane> Tracer<'w, L> {
 #[inline(always)]
 fn background<L: Lane>(world: &World, missed: &Run, rays: &RayBatch<L::Elem>, gathered: &mut Gathered<'_, L::Elem>) {
     for group in &missed.groups {
-        let g = group.first as usize;
+        let g = group.place();
         let seen = three!(c => L::load(&rays.weight[c][g..]) * L::splat(world.background[c]));
         gathered.add(group, &rays.slot, seen);
     }
@@ -213,7 +203,7 @@ fn pack<L: Lane>(
 ) {
     to.len = 0;
     for group in &run.groups {
-        let (g, at, m) = (group.first as usize, to.len, L::Mask::from_bits(group.bits));
+        let (g, at, m) = (group.place(), to.len, L::Mask::from_bits(group.bits));
         for c in 0..3 {
             L::load(&rays.o[c][g..]).compress(m, &mut to.o[c][at..]);
             L::load(&rays.d[c][g..]).compress(m, &mut to.d[c][at..]);

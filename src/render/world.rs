@@ -232,6 +232,12 @@ impl World {
         TEST
     }
 
+    /// Whether surface `id` is a primitive of its own whose crossings aren't confined.
+    #[inline(always)]
+    pub(super) fn is_plain(&self, id: u32) -> bool {
+        (id as usize) < self.primitives.len() && self.confines(id).is_none()
+    }
+
     /// The box that crossings with primitive `id` are kept to, if its proportions are extreme.
     #[inline(always)]
     pub(super) fn confines(&self, id: u32) -> Option<&Bounds> {

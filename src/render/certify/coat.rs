@@ -44,7 +44,7 @@ pub struct Coordinate {
 impl<'s> Spot<'s> {
     /// The point brought to another space.
     fn apply(rows: &Rows, p: [Coordinate; 3], w: Form) -> [Coordinate; 3] {
-        rows.map(|[x, y, z, shift]| {
+        rows.rows.map(|[x, y, z, shift]| {
             let factors = [x, y, z];
             let depends = (0..3).any(|i| factors[i] != 0.0 && p[i].fixed.is_none());
             let sum = three!(i => p[i].over.times(factors[i]));

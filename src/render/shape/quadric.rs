@@ -64,6 +64,8 @@ pub struct Roots<R: Real> {
     pub a: R,
     /// Where the form is constant along the line, and negative: no crossing, but inside throughout.
     pub always_inside: R::Mask,
+    /// Whether the larger root is needed, and known, in any lane.
+    pub further: bool,
 }
 
 /// In units of roundoff, relative to what it was computed from: a discriminant below this is evaluated again in
@@ -94,7 +96,7 @@ pub fn roots<R: Real>(
     if !starts_here && !(real | doubt).any() {
         // Most registers of a tile pass by most of its shapes: no root, no quotient.
         let always_inside = constant & c.le(zero);
-        return Roots { lo: Crossing::never(-1.0), hi: Crossing::never(1.0), real, a, always_inside };
+        return Roots { lo: Crossing::never(-1.0), hi: Crossing::never(1.0), real, a, always_inside, further: false };
     }
     let pair = Pair::new(a, b, c, disc);
     let x = pair.smaller();
@@ -102,14 +104,15 @@ pub fn roots<R: Real>(
     // A crossing much nearer than the point that the coefficients were taken at: its t is a small difference of large
     // numbers, and its sign means nothing yet.
     let needed = (real & is_small(lo.t, t0)) | needs_further(lo.t, real);
-    if needed.any() {
+    let further = needed.any();
+    if further {
         let y = pair.larger();
         // Rounding may exchange two that are all but one. Not in lanes that don't need the other: whether it is computed there
         // depends on the lanes beside.
         let (x, y) = (R::select(needed, x.min(y), x), R::select(needed, x.max(y), hi.tau));
         (lo, hi) = (Crossing { tau: x, t: t0 + x }, Crossing { tau: y, t: t0 + y });
     }
-    let mut found = Roots { lo, hi, real, a, always_inside: constant & c.le(zero) };
+    let mut found = Roots { lo, hi, real, a, always_inside: constant & c.le(zero), further };
 
     // Such rays start near the surface, where the coefficients at the ray's own origin are the good ones.
     let (near_lo, near_hi) = (real & is_small(lo.t, t0), real & is_small(hi.t, t0));
@@ -123,6 +126,7 @@ pub fn roots<R: Real>(
     }
     if doubt.any() {
         found = judged_again(ray, t0, form, doubt, found);
+        found.further = true;
     }
     if let Some(own) = own {
         found = deflated(ray, t0, form, own, found);

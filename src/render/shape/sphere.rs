@@ -35,7 +35,9 @@ pub(super) fn crossings<R: Real>(r: f64, ray: &LocalRay<R>, own: Option<Own<R>>,
     );
     let (way_in, t_out, way_out) = convex_exit(&own, x.real, x.hi.t, x.real);
     visit.crossing(x.lo.t, part, way_in);
-    visit.crossing(t_out, part, way_out);
+    if x.further || own.is_some() {
+        visit.crossing(t_out, part, way_out);
+    }
 }
 
 /// The point of the sphere under `p`.
