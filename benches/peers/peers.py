@@ -86,7 +86,7 @@ def rows(rtdsl, mitsuba, folder):
     def povray(scene):
         return ['povray', f'+I{folder}/{scene}.pov', f'+O{folder}/povray.png', '+W1280', '+H720', '-D', '-V', '-A']
 
-    one, small = us('seed', '--aa', 'off'), us('seed', '--aa', 'off', '--size', '16x16')
+    one, small, raw = us('seed', '--aa', 'off'), *(us(scene, '--aa', 'off', '--size', '16x16') for scene in ('seed', 'seed_ppm'))
     loop, text, mesh = us('spheres_loop'), us('spheres'), us('mesh')
     slopes = ([one, us('seed', '--aa', 'grid:4')], [tachyon('seed'), tachyon('seed', 15)])
     spheres = '100,000 spheres, shadows and mirrors'
@@ -99,6 +99,7 @@ def rows(rtdsl, mitsuba, folder):
         Row('seed', f'{seeds}, 4 rays a pixel', 'Tachyon', us('seed', '--aa', 'grid:2'), tachyon('seed', 3), 0.07, 0.08),
         Slope('slope', f'{seeds}, each further ray a pixel, 1 to 16', 'Tachyon', *slopes, 0.06),
         Row('start', 'seed scene 16x16 (start-up)', 'Tachyon', small, tachyon('seed', size=(16, 16)), 0.5, 0.5),
+        Row('start', 'seed scene 16x16 (start-up), both read the globe from the same PPM', 'Tachyon', raw, tachyon('seed', size=(16, 16))),
         Row('spheres', f'{spheres}, from a loop', 'Tachyon', loop, tachyon('spheres'), 0.30, 0.35),
         Row('spheres', f'{spheres}, from 100,000 lines', 'Tachyon', text, tachyon('spheres'), 0.6, 0.6),
         Row('spheres', f'{spheres}, from 100,000 lines', 'POV-Ray', text, povray('spheres')),

@@ -1,5 +1,5 @@
-"""The seed scene, for us and the others: `python3 seed.py OUT` writes OUT/seed.scene, seed.pov,
-seed.dat and the pictures that Tachyon reads. Right-handed, y up, the eye at the origin looking along -z, the tangent of half
+"""The seed scene, for us and the others: `python3 seed.py OUT` writes OUT/seed.scene, seed_ppm.scene (whose globe is the file
+that Tachyon reads), seed.pov, seed.dat and the pictures that Tachyon reads. Right-handed, y up, the eye at the origin looking along -z, the tangent of half
 the vertical angle 0.25, 16:9."""
 import math
 import os
@@ -24,10 +24,9 @@ def above(p, height):
     return p[0], p[1] + height, p[2]
 
 
-def scene():
+def scene(earth):
     v = lambda p: '[' + ', '.join('%.17g' % x for x in p) + ']'
     c = lambda p: 'linear(' + ', '.join('%.17g' % x for x in p) + ')'
-    earth = os.path.basename(EARTH)
     return f'''rtdsl 1
 let shiny = phong(diffuse: {DIFFUSE}, specular: {SPECULAR}, shininess: {SHININESS})
 camera(from: [0, 0, 0], at: [0, 0, -1], fov: 28.0724869deg)
@@ -123,22 +122,25 @@ PLANE CENTER {w((0, FLOOR, 0))} NORMAL 0 1 0 TEXTURE {look((1, 1, 1), texture=sq
 
 
 def png(path):
-    """Width, height and bytes of a PNG of 8-bit RGB that isn't interlaced."""
+    """Width, height and RGB bytes of a PNG of 8-bit RGB, or of up to 256 colors that have numbers, that isn't interlaced."""
     data = open(path, 'rb').read()
-    at, packed = 8, b''
+    at, packed, palette = 8, b'', b''
     while at < len(data):
         (length,), kind = struct.unpack('>I', data[at:at + 4]), data[at + 4:at + 8]
         chunk, at = data[at + 8:at + 8 + length], at + 12 + length
         if kind == b'IHDR':
             width, height, *form = struct.unpack('>IIBBBBB', chunk)
-            assert form == [8, 2, 0, 0, 0], 'not 8-bit RGB'
+            assert form in ([8, 2, 0, 0, 0], [8, 3, 0, 0, 0]), 'neither 8-bit RGB nor colors with numbers'
+            pixel = 3 if form[1] == 2 else 1
+        elif kind == b'PLTE':
+            palette = chunk
         elif kind == b'IDAT':
             packed += chunk
-    packed, size, rows, above = zlib.decompress(packed), 3 * width, bytearray(), bytes(3 * width)
+    packed, size, rows, above = zlib.decompress(packed), pixel * width, bytearray(), bytes(pixel * width)
     for y in range(height):
         kind, row = packed[y * (size + 1)], bytearray(packed[y * (size + 1) + 1:(y + 1) * (size + 1)])
         for i in range(size):
-            a, b, c = (row[i - 3] if i > 2 else 0), above[i], (above[i - 3] if i > 2 else 0)
+            a, b, c = (row[i - pixel] if i >= pixel else 0), above[i], (above[i - pixel] if i >= pixel else 0)
             if kind == 4:
                 p, q, s = abs(b - c), abs(a - c), abs(a + b - 2 * c)
                 guess = a if p <= q and p <= s else b if q <= s else c
@@ -147,6 +149,8 @@ def png(path):
             row[i] = row[i] + guess & 255
         rows += row
         above = row
+    if pixel == 1:
+        rows = b''.join(palette[3 * i:3 * i + 3] for i in rows)
     return width, height, bytes(rows)
 
 
@@ -172,6 +176,7 @@ if __name__ == '__main__':
     ppm(f'{folder}/stripes.ppm', *stripes())
     with open(EARTH, 'rb') as source, open(f'{folder}/{os.path.basename(EARTH)}', 'wb') as copy:
         copy.write(source.read())
-    for name, text in ('scene', scene()), ('pov', pov()), ('dat', dat(folder)):
-        with open(f'{folder}/seed.{name}', 'w') as file:
+    scenes = ('seed.scene', scene(os.path.basename(EARTH))), ('seed_ppm.scene', scene('earth.ppm'))
+    for name, text in *scenes, ('seed.pov', pov()), ('seed.dat', dat(folder)):
+        with open(f'{folder}/{name}', 'w') as file:
             file.write(text)

@@ -5,6 +5,7 @@ use super::argument::{
     address, anti_aliasing, assignment, bits, compression, crop, filter, glob_pattern, max_error, pixel, poll_interval,
     precision, seconds, size,
 };
+use super::later::Later;
 use super::trade::axis::Axis;
 use crate::film::{Compression, Depth};
 use crate::render::Crop;
@@ -31,26 +32,26 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Make the picture of a scene.
-    Render(RenderArgs),
+    Render(Later<RenderArgs>),
     /// Make the picture again whenever the scene changes, in the terminal and on a live page.
     #[command(mut_arg("file", |file| file.help("Scene file")))]
     Watch(WatchArgs),
     /// Make the pictures of a folder of scenes, and pages that show them with their text.
-    Gallery(GalleryArgs),
+    Gallery(Later<GalleryArgs>),
     /// Look for mistakes without making a picture.
-    Check(CheckArgs),
+    Check(Later<CheckArgs>),
     /// Say what the renderer does for a scene and why, or what a pixel sees.
-    Explain(ExplainArgs),
+    Explain(Later<ExplainArgs>),
     /// Try out on this machine what rtdsl says of its accuracy.
-    Verify(VerifyArgs),
+    Verify(Later<VerifyArgs>),
     /// Measure what accuracy costs: error against time for this scene on this machine.
-    Trade(TradeArgs),
+    Trade(Later<TradeArgs>),
     /// List the parameters that `--set` can change.
-    Params(ParamsArgs),
+    Params(Later<ParamsArgs>),
     /// Explain a word of the scene language.
-    Help(HelpArgs),
+    Help(Later<HelpArgs>),
     /// Print a completion script for a shell.
-    Completions(CompletionsArgs),
+    Completions(Later<CompletionsArgs>),
 }
 
 /// Which scene, with which parameters.
@@ -363,6 +364,9 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+        let help = |command: &str| Cli::try_parse_from(["rtdsl", command, "--help"]).unwrap_err().to_string();
+        assert!(help("render").starts_with("Make the picture of a scene.\n"), "{}", help("render"));
+        assert!(help("watch").starts_with("Make the picture again whenever"), "{}", help("watch"));
     }
 
     #[test]

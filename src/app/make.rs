@@ -7,7 +7,7 @@ use crate::render::certify::Certificate;
 use crate::render::{self, Options, RayCounts, Rendered, World};
 use std::io::{self, Seek, Write};
 use std::sync::atomic::AtomicBool;
-use tempfile::SpooledTempFile;
+use tempfile::{SpooledData, SpooledTempFile};
 
 /// What is to be made.
 pub struct Make<'m> {
@@ -115,10 +115,13 @@ impl Pixels {
     pub fn write(self, format: Format, recipe: &Recipe, out: &mut (impl Write + Seek)) -> io::Result<()> {
         match self {
             Pixels::Film(film) => film::encode(&film, format, recipe, out),
-            Pixels::File(mut file) => {
-                file.rewind()?;
-                io::copy(&mut file, out).map(|_| ())
-            }
+            Pixels::File(file) => match file.into_inner() {
+                SpooledData::InMemory(file) => out.write_all(file.get_ref()),
+                SpooledData::OnDisk(mut file) => {
+                    file.rewind()?;
+                    io::copy(&mut file, out).map(|_| ())
+                }
+            },
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod completions;
 pub mod explain;
 pub mod gallery;
 pub mod help;
+pub mod later;
 pub mod load;
 mod make;
 mod map;
@@ -45,16 +46,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let result = match &cli.command {
-        Command::Render(a) => render::run(a),
+        Command::Render(a) => render::run(&a.0),
         Command::Watch(a) => watch::run(a),
-        Command::Gallery(a) => gallery::run(a),
-        Command::Check(a) => check::run(a),
-        Command::Explain(a) => explain::run(a),
-        Command::Verify(a) => verify::run(a),
-        Command::Trade(a) => trade::run(a),
-        Command::Params(a) => params::run(a),
-        Command::Help(a) => help::run(a),
-        Command::Completions(a) => completions::run(a),
+        Command::Gallery(a) => gallery::run(&a.0),
+        Command::Check(a) => check::run(&a.0),
+        Command::Explain(a) => explain::run(&a.0),
+        Command::Verify(a) => verify::run(&a.0),
+        Command::Trade(a) => trade::run(&a.0),
+        Command::Params(a) => params::run(&a.0),
+        Command::Help(a) => help::run(&a.0),
+        Command::Completions(a) => completions::run(&a.0),
     };
     let exit = result.unwrap_or_else(|stop| {
         stop.print();

@@ -170,7 +170,7 @@ fn open(file: &AssetFile, loader: &mut Loader) -> Result<Image, Diagnostic> {
     let refuse = |why: String| Diagnostic::error(format!("can't show `{}`: {why}", file.path)).at(file.span, "");
     let bytes = read(&path, picture::FILE_BYTES).map_err(|e| refuse(reason(&e)))?;
     let digest = loader.was_read(dependency, &path, &bytes);
-    let decode = || picture::decode(&path, &bytes, digest, &loader.limits);
+    let decode = || picture::decode(&path, bytes, digest, &loader.limits);
     let picture = loader.store.pictures.get(digest, decode).map_err(refuse)?;
     Ok(Image { path, ..picture })
 }

@@ -9,12 +9,12 @@ use std::path::Path;
 pub const FILE_BYTES: usize = 1 << 30;
 
 /// The picture that `bytes` are, read at `path`; why they are none, in words, otherwise.
-pub fn decode(path: &Path, bytes: &[u8], digest: [u8; 32], limits: &Limits) -> Result<Image, String> {
+pub fn decode(path: &Path, bytes: Vec<u8>, digest: [u8; 32], limits: &Limits) -> Result<Image, String> {
     let may_be = |width: u32, height: u32| {
         width.max(height) <= range::LARGEST_SIDE && u64::from(width) * u64::from(height) <= limits.image_texels
     };
     let picture = read(bytes, may_be).map_err(|e| match e {
-        ReadError::Unknown => "it is neither a PNG nor a JPEG file".into(),
+        ReadError::Unknown => "it is no PNG, JPEG, PPM or PGM file".into(),
         ReadError::Damaged(kind) => format!("it is damaged: not a complete {kind} file"),
         ReadError::TooLarge(width, height) => format!("it is too large: {width} × {height}"),
     })?;

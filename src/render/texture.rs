@@ -1,7 +1,7 @@
 //! Pictures as the tracer reads them: bytes as in the file, brought to linear light by a table.
 
 use crate::scene::color::decode_srgb;
-use crate::scene::{Filter, Image};
+use crate::scene::{Filter, Image, Texels};
 use std::sync::Arc;
 
 /// A picture, ready to be looked up. Coordinates outside 0..1 are the caller's to bring back or to wrap.
@@ -9,8 +9,17 @@ use std::sync::Arc;
 pub struct Texture {
     width: usize,
     height: usize,
-    texels: Arc<Vec<[u8; 3]>>,
-    linear: Box<[f64; 256]>,
+    texels: Arc<Texels>,
+    table: Table,
+}
+
+/// To linear light, by what the texels are.
+#[derive(Clone, Debug)]
+enum Table {
+    /// A channel's value.
+    Value(Box<[f64; 256]>),
+    /// The colour of a number.
+    Color(Box<[[f64; 3]; 256]>),
 }
 
 /// What lies beyond an edge of the picture.
@@ -25,17 +34,21 @@ pub enum Edge {
 impl Texture {
     /// Shares an image's texels.
     pub fn new(image: &Image) -> Texture {
-        Texture {
-            width: image.width as usize,
-            height: image.height as usize,
-            texels: Arc::clone(&image.texels),
-            linear: Box::new(std::array::from_fn(|i| decode_srgb(i as f64 / 255.0))),
-        }
+        let linear: [f64; 256] = std::array::from_fn(|i| decode_srgb(i as f64 / 255.0));
+        let table = match &*image.texels {
+            Texels::Colors(_) => Table::Value(Box::new(linear)),
+            Texels::Numbers { colors, .. } => Table::Color(Box::new(colors.map(|c| c.map(|v| linear[v as usize])))),
+        };
+        Texture { width: image.width as usize, height: image.height as usize, texels: Arc::clone(&image.texels), table }
     }
 
     /// Bytes it occupies.
     pub fn memory_bytes(&self) -> usize {
-        self.texels.len() * 3 + size_of::<[f64; 256]>()
+        let table = match &self.table {
+            Table::Value(table) => size_of_val(&**table),
+            Table::Color(table) => size_of_val(&**table),
+        };
+        self.texels.memory_bytes() + table
     }
 
     /// Texels across and down.
@@ -72,7 +85,15 @@ impl Texture {
     #[inline(always)]
     fn texel(&self, x: f64, y: f64, edges: [Edge; 2]) -> [f64; 3] {
         let (i, j) = (index(x, self.width, edges[0]), index(y, self.height, edges[1]));
-        self.texels[j * self.width + i].map(|c| self.linear[c as usize])
+        let at = j * self.width + i;
+        match (&*self.texels, &self.table) {
+            (Texels::Numbers { numbers, .. }, Table::Color(colors)) => colors[numbers[at] as usize],
+            (Texels::Colors(bytes), Table::Value(linear)) => {
+                let texel = &bytes[3 * at..3 * at + 3];
+                [linear[texel[0] as usize], linear[texel[1] as usize], linear[texel[2] as usize]]
+            }
+            _ => [0.0; 3], // never: the table was made for the texels
+        }
     }
 }
 
@@ -93,7 +114,11 @@ mod tests {
     use super::*;
 
     fn two_by_two() -> Texture {
-        let texels = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
+        let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
+        texture(Texels::Colors(colors.as_flattened().to_vec()))
+    }
+
+    fn texture(texels: Texels) -> Texture {
         Texture::new(&Image { path: "x.png".into(), digest: [0; 32], width: 2, height: 2, texels: texels.into() })
     }
 
@@ -114,5 +139,19 @@ mod tests {
             }
         }
         assert_eq!(t.at(f64::NAN, 1e300, Filter::Nearest, clamp), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn numbers_stand_for_colors() {
+        let mut colors = Box::new([[0; 3]; 256]);
+        (colors[7], colors[255]) = ([1, 2, 3], [200, 100, 50]);
+        let numbered = texture(Texels::Numbers { numbers: vec![7, 255, 255, 7], colors });
+        let plain = texture(Texels::Colors(vec![1, 2, 3, 200, 100, 50, 200, 100, 50, 1, 2, 3]));
+        for i in 0..4 {
+            let at = |t: &Texture| t.at_texel(i % 2, i / 2, [Edge::Clamp; 2]).map(f64::to_bits);
+            assert_eq!(at(&numbered), at(&plain));
+        }
+        let gray = texture(Texels::gray(vec![0, 9, 99, 255]));
+        assert_eq!(gray.at_texel(1, 1, [Edge::Clamp; 2]), [1.0; 3]);
     }
 }

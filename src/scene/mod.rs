@@ -18,7 +18,7 @@ pub mod shape;
 pub use camera::{Camera, Projection};
 pub use color::Color;
 pub use graph::{Instance, Node, NodeId, NodeKind, Scene};
-pub use image::{Image, ImageId};
+pub use image::{Image, ImageId, Texels};
 pub use light::Light;
 pub use material::{Material, MaterialId};
 pub use mesh::{Mesh, MeshData, MeshId};

@@ -133,11 +133,5 @@ pub fn earth() -> Image {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/assets/earth.png");
     let rgb = ::image::open(path).expect("the examples' picture").into_rgb8();
     let (width, height) = rgb.dimensions();
-    Image {
-        path: path.into(),
-        digest: [0; 32],
-        width,
-        height,
-        texels: rgb.pixels().map(|p| p.0).collect::<Vec<_>>().into(),
-    }
+    Image { path: path.into(), digest: [0; 32], width, height, texels: Texels::Colors(rgb.into_raw()).into() }
 }

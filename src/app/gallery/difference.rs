@@ -1,7 +1,7 @@
 //! Whether a picture is what it was, and where not.
 
 use super::mark::entries;
-use crate::film::{Picture, Recipe, read};
+use crate::film::{Recipe, read};
 use crate::scene::range::MOST_PIXELS;
 use std::io::{self, Cursor};
 
@@ -60,9 +60,18 @@ pub fn alone(is: &[u8]) -> Option<Panels> {
     decoded(is).map(|new| Panels::of(&[&new], "is"))
 }
 
+/// A picture whose texels are compared.
+struct Picture {
+    width: u32,
+    height: u32,
+    texels: Vec<[u8; 3]>,
+}
+
 /// The picture in a file, as large as any that this program makes.
 fn decoded(file: &[u8]) -> Option<Picture> {
-    read(file, |width, height| u64::from(width) * u64::from(height) <= MOST_PIXELS).ok()
+    let may_be = |width: u32, height: u32| u64::from(width) * u64::from(height) <= MOST_PIXELS;
+    let picture = read(file.to_vec(), may_be).ok()?;
+    Some(Picture { width: picture.width, height: picture.height, texels: picture.texels.into_colors() })
 }
 
 fn numbers(old: &Picture, new: &Picture) -> Numbers {

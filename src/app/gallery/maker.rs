@@ -188,6 +188,7 @@ pub fn png(film: &Film, recipe: &Recipe) -> io::Result<Vec<u8>> {
 mod tests {
     use super::*;
     use crate::app::args::{Cli, Command};
+    use crate::app::later::Later;
     use clap::Parser;
     use std::fs;
 
@@ -198,7 +199,7 @@ mod tests {
         let picture = png(&Film::new(4, 4), &Recipe::new()).unwrap();
         fs::write(folder.path().join("a.png"), picture).unwrap();
         let dir = folder.path().to_str().unwrap();
-        let Command::Gallery(args) = Cli::parse_from(["rtdsl", "gallery", dir, "-o", dir]).command else {
+        let Command::Gallery(Later(args)) = Cli::parse_from(["rtdsl", "gallery", dir, "-o", dir]).command else {
             panic!("another command")
         };
         let project = Project::open(&args).unwrap();

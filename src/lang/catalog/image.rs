@@ -11,7 +11,11 @@ pub const WORDS: &[Word] = &[Word {
     name: "image",
     kind: Kind::Pattern,
     params: &[
-        required("file", Ty::Text, "a PNG or JPEG file; its path starts at the scene file's folder"),
+        required(
+            "file",
+            Ty::Text,
+            "a PNG or JPEG file, or a binary PPM or PGM; its path starts at the scene file's folder",
+        ),
         optional(
             "mapping",
             Ty::Choice(&["spherical", "normal", "planar", "cylindrical"]),

@@ -27,11 +27,31 @@ pub use topic::{TOPICS, Topic};
 use super::value::BuiltinId;
 use super::word::{Param, Word};
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::OnceLock;
 
 struct Catalog {
     words: Vec<&'static Word>,
-    ids: HashMap<&'static str, BuiltinId>,
+    ids: HashMap<&'static str, BuiltinId, BuildHasherDefault<WordHasher>>,
+}
+
+/// FNV-1a (RFC 9923): the table is made anew by every process, and no text can put anything into it.
+struct WordHasher(u64);
+
+impl Default for WordHasher {
+    fn default() -> Self {
+        WordHasher(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hasher for WordHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3));
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 fn tables() -> &'static Catalog {

@@ -1,6 +1,7 @@
-//! Prepares a text for the grammar: checks that brackets and quotes match and aren't nested too deeply, blanks comments,
-//! and turns every line's end into `;` where it ends a statement and into a blank where it doesn't. No byte moves, so the
-//! grammar's positions are the file's. Splitting the text at its outermost statements lets one mistake be reported for each.
+//! Prepares a text for the grammar: checks that brackets and quotes match and aren't nested too deeply, blanks comments and
+//! tabs, and turns every line's end into `;` where it ends a statement and into a blank where it doesn't. No byte moves, so
+//! the grammar's positions are the file's. Splitting the text at its outermost statements lets one mistake be reported for
+//! each.
 
 mod unclosed;
 
@@ -167,6 +168,7 @@ impl Scanner<'_> {
             b'/' if next == Some(b'*') => return self.block_comment(),
             b'\n' => return self.line_end(),
             b' ' | b'\t' | b'\r' => {
+                self.out[self.i] = b' ';
                 self.i += 1;
                 return;
             }

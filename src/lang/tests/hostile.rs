@@ -150,11 +150,13 @@ fn shows(folder: &Path, name: &str, allow_read: &[&Path]) -> Result<Evaluated, F
 fn damaged_pictures_are_refused_or_shown() {
     let dir = tempfile::tempdir().unwrap();
     let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([x as u8 * 20, y as u8 * 30, 99]));
-    for ending in ["png", "jpg"] {
-        let good = dir.path().join(format!("good.{ending}"));
-        picture.save(&good).unwrap();
-        assert!(shows(dir.path(), &format!("good.{ending}"), &[]).is_ok());
-        let bytes = fs::read(&good).unwrap();
+    picture.save(dir.path().join("good.png")).unwrap();
+    picture.save(dir.path().join("good.jpg")).unwrap();
+    image::DynamicImage::from(picture.clone()).to_luma8().save(dir.path().join("gray.png")).unwrap();
+    fs::write(dir.path().join("good.ppm"), [&b"P6 9 7 255\n"[..], &picture.as_raw()[..]].concat()).unwrap();
+    for name in ["good.png", "gray.png", "good.jpg", "good.ppm"] {
+        assert!(shows(dir.path(), name, &[]).is_ok());
+        let bytes = fs::read(dir.path().join(name)).unwrap();
         let mut refused = 0;
         let cut = (0..bytes.len()).step_by(7).map(|n| bytes[..n].to_vec());
         let flipped = (0..bytes.len()).step_by(5).map(|n| {
@@ -171,7 +173,7 @@ fn damaged_pictures_are_refused_or_shown() {
                 assert!(f.diagnostics[0].message.starts_with("can't show `bad`: "), "{}", f.diagnostics[0].message);
             }
         }
-        assert!(refused > bytes.len() / 10, "{ending}: {refused}");
+        assert!(refused > bytes.len() / 10, "{name}: {refused}");
     }
 }
 
