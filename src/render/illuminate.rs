@@ -1,7 +1,7 @@
 //! The light that arrives at the hits of a run: light by light, each in three passes over the hits.
 //!
 //! First it is found which hits face the light, and their rays to it; then each surface that may stand in between is tested against
-//! all of these, in a loop of its own kind (see `sweep`); then what arrives is added to the sums of each hit. So a register's sums are
+//! all of these, in a loop of its own kind (see `known`); then what arrives is added to the sums of each hit. So a register's sums are
 //! added up in the order of the lights, whatever its company.
 
 use super::ball::Ball;
@@ -11,6 +11,7 @@ use super::candidates::Candidates;
 use super::confine::Confined;
 use super::footprint::Recorder;
 use super::highlight::power;
+use super::known::{Known, with_known};
 use super::light::{Shadow, ShadowRays, dimmed_by, occlusion};
 use super::optics::mirrored;
 use super::paint::{Paint, Paints};
@@ -18,9 +19,7 @@ use super::place::RESIDUE;
 use super::ray::Own;
 use super::run::MANY;
 use super::run_of_hits::{RunOfHits, Surfaces};
-use super::shape::Primitive;
 use super::shape::primitive::spawn_point;
-use super::sweep::with_known;
 use super::world::PointLight;
 use crate::math::real::{Mask, dot, minus, scaled, splat3, three};
 use crate::math::{Elem, Lane};
@@ -155,7 +154,7 @@ impl<E: Elem> RunOfHits<'_, E> {
             #[inline(always)]
             || {
                 let ball = self.world.ball(k).filter(Ball::is_there);
-                let stopped = with_known!(primitive, known => self.stop::<L>((known, k), ball, s, to));
+                let stopped = with_known!(primitive, known => self.stop::<L, _>((known, k), ball, s, to));
                 if stopped && recorder.is_on() {
                     recorder.shaded(k);
                 }
@@ -165,9 +164,9 @@ impl<E: Elem> RunOfHits<'_, E> {
 
     /// Whether any ray is stopped by the surface, which stands in the ball.
     #[inline(always)]
-    fn stop<L: Lane<Elem = E>>(
+    fn stop<L: Lane<Elem = E>, S: Known>(
         &self,
-        (primitive, k): (&Primitive, u32),
+        (surface, k): (S, u32),
         ball: Option<Ball>,
         s: &Surfaces<E>,
         to: &mut Illumination<E>,
@@ -186,7 +185,7 @@ impl<E: Elem> RunOfHits<'_, E> {
                 let here = L::load(&self.hits.hits.id[g..]).same(L::splat(k as f64));
                 if here.any() {
                     let outward = !L::load(&s.inside[g..]).same(L::one());
-                    if primitive.kind.is_left_for_good() && *open & !(here & outward).bits() == 0 {
+                    if surface.is_left_for_good() && *open & !(here & outward).bits() == 0 {
                         continue;
                     }
                     own = Own::of(here, L::load(&self.hits.hits.part[g..]), outward);
@@ -205,7 +204,7 @@ impl<E: Elem> RunOfHits<'_, E> {
             let distance = L::load(&to.distance[g..]);
             let mut blocked = Blocked { distance, blocked: L::Mask::splat(false) };
             let visit = &mut Confined::new(met, None, (o, l), &mut blocked);
-            primitive.crossings::<L, false>(self.world.tables(), o, l, own, visit);
+            surface.crossings::<L, false>(self.world.tables(), (o, l), own, visit);
             let blocked = blocked.blocked.bits();
             stopped |= *open & blocked != 0;
             *open &= !blocked;

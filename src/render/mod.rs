@@ -31,6 +31,7 @@ mod gathered;
 mod graft;
 mod highlight;
 mod illuminate;
+mod known;
 mod laid_out;
 mod lattice;
 mod light;

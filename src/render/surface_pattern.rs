@@ -1,8 +1,8 @@
 //! Where on a surface a pattern is asked for, and how a height pattern tilts the normal.
 
 use super::material::{Slot, Surfacing, rows};
-use super::pattern_point::{PatternPoint, Rows, turned};
-use super::place::RESIDUE;
+use super::pattern_point::{MadeDetail, PatternPoint, Rows, turned};
+use super::place::{RESIDUE, Rescale};
 use super::shape::{Kind, Primitive};
 use super::world::{MadeSpace, World};
 use crate::math::real::{axpy, dot, each3, minus, scaled, splat3, three};
@@ -13,6 +13,9 @@ pub struct PatternFrame<'w> {
     world: &'w World,
     surfacing: &'w Surfacing,
     made: Option<&'w MadeSpace>,
+    /// What of it is asked for each register: looked up once.
+    rescale: Option<&'w Rescale>,
+    detail: Option<&'w MadeDetail>,
 }
 
 impl<'w> PatternFrame<'w> {
@@ -30,7 +33,9 @@ impl<'w> PatternFrame<'w> {
                 spaces[k as usize] = without_residue(rows(&map), by_corners);
             }
         }
-        PatternFrame { world, surfacing, made }
+        let rescale = made.and_then(|made| made.rescale.as_deref());
+        let detail = made.and_then(|made| made.detail.as_deref());
+        PatternFrame { world, surfacing, made, rescale, detail }
     }
 
     /// Whether normals are tilted by a pattern.
@@ -47,7 +52,7 @@ impl<'w> PatternFrame<'w> {
     /// A point of the primitive's frame in the lengths in which the shape was made.
     #[inline(always)]
     fn as_made<R: Real>(&self, local: [R; 3]) -> [R; 3] {
-        let Some(MadeSpace { rescale: Some(rescale), .. }) = self.made else { return local };
+        let Some(rescale) = self.rescale else { return local };
         three!(i => {
             let mut x = local[i] * R::splat(rescale.inverse);
             for (scaled, made) in rescale.faces[i] {
@@ -59,12 +64,7 @@ impl<'w> PatternFrame<'w> {
 
     #[inline(always)]
     fn point_as_made<'s, R: Real>(&'s self, spaces: &'s [Rows], local: [R; 3], n: [R; 3]) -> PatternPoint<'s, R> {
-        // No `Option::map`: its closure may be compiled without the lanes' instructions.
-        let detail = match self.made {
-            Some(MadeSpace { detail: Some(detail), .. }) => Some(&**detail),
-            _ => None,
-        };
-        PatternPoint { local, spaces, n, detail }
+        PatternPoint { local, spaces, n, detail: self.detail }
     }
 
     /// What the material lets through at a point.

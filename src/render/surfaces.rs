@@ -2,12 +2,12 @@
 
 use super::batch::{load3, put3, store3};
 use super::bounds::Bounds;
+use super::known::{Known, with_known};
 use super::run::LaneGroup;
 use super::run_of_hits::{FacedBy, RunOfHits, Surfaces};
-use super::shape::{Mesh, Primitive, Surface};
+use super::shape::{Mesh, Surface};
 use super::span::Span;
 use super::surface_pattern::bumped;
-use super::sweep::with_known;
 use crate::math::real::{Mask, dot};
 use crate::math::{Elem, Lane};
 
@@ -16,9 +16,9 @@ impl<E: Elem> RunOfHits<'_, E> {
     #[inline(always)]
     pub fn surfaces<L: Lane<Elem = E>, const AT_EYE: bool>(&self, s: &mut Surfaces<E>) -> Bounds {
         s.all_outside = true;
-        // Asked once for all, where there is one surface: see `sweep`.
+        // Asked once for all, where there is one surface: see `known`.
         match self.world.primitives.get(self.hits.only as usize) {
-            Some(primitive) => with_known!(primitive, known => self.surfaces_of::<L, AT_EYE>(known, s)),
+            Some(primitive) => with_known!(primitive, known => self.surfaces_of::<L, AT_EYE, _>(known, s)),
             None => self.surfaces_of_many::<L, AT_EYE>(s),
         }
         let mut points = Span::<L>::new();
@@ -37,14 +37,14 @@ impl<E: Elem> RunOfHits<'_, E> {
 
     /// The same of hits that all lie on one `primitive`.
     #[inline(always)]
-    fn surfaces_of<L: Lane<Elem = E>, const AT_EYE: bool>(&self, primitive: &Primitive, s: &mut Surfaces<E>) {
+    fn surfaces_of<L: Lane<Elem = E>, const AT_EYE: bool, S: Known>(&self, primitive: S, s: &mut Surfaces<E>) {
         let (rays, hits, tables) = (self.hits.rays, self.hits.hits, self.world.tables());
         for group in self.hits.groups {
             let g = group.place();
             let d = load3::<L>(&rays.d, g);
             let o = if AT_EYE { [L::zero(); 3] } else { load3::<L>(&rays.o, g) };
-            let (t, part) = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
-            let surface = primitive.surface::<L, AT_EYE>(tables, o, d, t, part);
+            let at = (L::load(&hits.t[g..]), L::load(&hits.part[g..]));
+            let surface = primitive.surface::<L, AT_EYE>(tables, (o, d), at);
             self.keep(group, d, &surface, s);
         }
     }

@@ -7,42 +7,13 @@
 use super::ball::Ball;
 use super::batch::{HitColumns, RayBatch, load3};
 use super::confine::Confined;
+use super::known::{Known, with_known};
 use super::nearest::Nearest;
 use super::ray::Own;
 use super::run::place;
-use super::shape::Primitive;
 use super::shape::primitive::Tables;
 use super::world::World;
 use crate::math::{Lane, Mask};
-
-/// Does `$body` with `$known`, a primitive that equals `$primitive`: where its axes are the world's, as they mostly are, once for each kind
-/// of shape, and there the compiler knows both. A macro, for a closure isn't surely inlined.
-macro_rules! with_known {
-    ($primitive:expr, $known:ident => $body:expr) => {{
-        use crate::render::frame::{Axes, Frame};
-        use crate::render::shape::{Kind, Primitive};
-        let primitive: &Primitive = $primitive;
-        let upright = Frame { axes: Axes::Cyclic(0), ..primitive.frame };
-        macro_rules! of_kind {
-            ($kind:expr) => {{
-                let $known = &Primitive { kind: $kind, frame: upright, ..*primitive };
-                $body
-            }};
-        }
-        match (primitive.kind, primitive.frame.axes) {
-            (Kind::Sphere(r), Axes::Cyclic(0)) => of_kind!(Kind::Sphere(r)),
-            (Kind::Plane, Axes::Cyclic(0)) => of_kind!(Kind::Plane),
-            (Kind::Cuboid(half), Axes::Cyclic(0)) => of_kind!(Kind::Cuboid(half)),
-            (Kind::Tube(tube), Axes::Cyclic(0)) => of_kind!(Kind::Tube(tube)),
-            (Kind::Triangle(i), _) => of_kind!(Kind::Triangle(i)),
-            _ => {
-                let $known = primitive;
-                $body
-            }
-        }
-    }};
-}
-pub(super) use with_known;
 
 /// Tests surface `k` against every ray of a batch. `AT_EYE` says that all origins are exactly 0.
 #[inline(always)]
@@ -56,7 +27,7 @@ pub fn sweep<L: Lane, const AT_EYE: bool>(
         Some(primitive) if world.confines(k).is_none() => {
             let ball = world.ball(k).filter(Ball::is_there);
             with_known!(primitive, known => {
-                let one = One { tables: world.tables(), primitive: known, k, ball };
+                let one = One { tables: world.tables(), surface: known, k, ball };
                 one.against::<L, AT_EYE>(rays, hits);
             });
         }
@@ -71,15 +42,15 @@ pub fn sweep<L: Lane, const AT_EYE: bool>(
 }
 
 /// A surface, and what rays are told of it.
-struct One<'w> {
+struct One<'w, S> {
     tables: Tables<'w>,
-    primitive: &'w Primitive,
+    surface: S,
     k: u32,
     /// Around it.
     ball: Option<Ball>,
 }
 
-impl One<'_> {
+impl<S: Known> One<'_, S> {
     #[inline(always)]
     fn against<L: Lane, const AT_EYE: bool>(&self, rays: &RayBatch<L::Elem>, hits: &mut HitColumns<L::Elem>) {
         let number = L::splat(self.k as f64);
@@ -93,7 +64,7 @@ impl One<'_> {
                 if here.any() {
                     let outward = L::one().same(L::load(&rays.outward[g..]));
                     let live = L::Mask::first((rays.len - g).min(L::WIDTH));
-                    if self.primitive.kind.is_left_for_good() && !(live & !(here & outward)).any() {
+                    if self.surface.is_left_for_good() && !(live & !(here & outward)).any() {
                         continue;
                     }
                     own = Own::of(here, L::load(&rays.source_part[g..]), outward);
@@ -112,7 +83,7 @@ impl One<'_> {
             let mut best = Nearest::load(hits, g);
             best.current = number;
             let visit = &mut Confined::new(met, None, (o, d), &mut best);
-            self.primitive.crossings::<L, AT_EYE>(self.tables, o, d, own, visit);
+            self.surface.crossings::<L, AT_EYE>(self.tables, (o, d), own, visit);
             best.store(hits, g);
         }
     }

@@ -13,6 +13,7 @@ mod torus;
 pub mod triangle;
 mod tube;
 
+use super::ray::{LocalRay, Own};
 use crate::math::{Mask, Real};
 pub use mesh::Mesh;
 pub use primitive::{Kind, Primitive, Surface};
@@ -50,13 +51,91 @@ impl<R: Real, F: FnMut(R, R, R::Mask)> Visit<R> for F {
     }
 }
 
+/// A kind of shape in its own frame, known to the compiler.
+pub trait Kernel: Copy {
+    /// Calls `visit(t, part, valid)` for every crossing of the ray's line, behind the origin too.
+    fn crossings<R: Real>(self, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>);
+    /// The point of the surface under `p`, on `part`.
+    fn point<R: Real>(self, p: [R; 3], part: R) -> Point<R>;
+    /// Whether a ray that leaves it to the outside never meets it again.
+    fn is_left_for_good(self) -> bool;
+}
+
+/// The plane y = 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane;
+
+/// A box, by half its size along each axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Cuboid(pub [f64; 3]);
+
+impl Kernel for Ball {
+    #[inline(always)]
+    fn crossings<R: Real>(self, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+        sphere::crossings(self.r, ray, own, visit);
+    }
+    #[inline(always)]
+    fn point<R: Real>(self, p: [R; 3], _part: R) -> Point<R> {
+        sphere::point(self.r, p)
+    }
+    #[inline(always)]
+    fn is_left_for_good(self) -> bool {
+        true
+    }
+}
+
+impl Kernel for Plane {
+    #[inline(always)]
+    fn crossings<R: Real>(self, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+        flat::plane_crossing(ray, own, visit);
+    }
+    #[inline(always)]
+    fn point<R: Real>(self, p: [R; 3], _part: R) -> Point<R> {
+        flat::point(p)
+    }
+    #[inline(always)]
+    fn is_left_for_good(self) -> bool {
+        true
+    }
+}
+
+impl Kernel for Cuboid {
+    #[inline(always)]
+    fn crossings<R: Real>(self, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+        cuboid::crossings(self.0, ray, own, visit);
+    }
+    #[inline(always)]
+    fn point<R: Real>(self, p: [R; 3], part: R) -> Point<R> {
+        cuboid::point(self.0, p, part)
+    }
+    #[inline(always)]
+    fn is_left_for_good(self) -> bool {
+        true
+    }
+}
+
+impl Kernel for Tube {
+    #[inline(always)]
+    fn crossings<R: Real>(self, ray: &LocalRay<R>, own: Option<Own<R>>, visit: &mut impl Visit<R>) {
+        tube::crossings(&self, ray, own, visit);
+    }
+    #[inline(always)]
+    fn point<R: Real>(self, p: [R; 3], part: R) -> Point<R> {
+        tube::point(&self, p, part)
+    }
+    #[inline(always)]
+    fn is_left_for_good(self) -> bool {
+        self.caps
+    }
+}
+
 /// A point of a surface in the shape's frame.
 #[derive(Clone, Copy, Debug)]
-struct Point<R> {
+pub struct Point<R> {
     /// The point, brought back onto the surface.
-    p: [R; 3],
+    pub p: [R; 3],
     /// Unit normal; outwards for closed shapes.
-    n: [R; 3],
+    pub n: [R; 3],
     /// How far `p` can be from the surface, by component.
-    error: [R; 3],
+    pub error: [R; 3],
 }

@@ -1,7 +1,7 @@
 //! One surface of the world: a shape, where it stands, what it is made of.
 
 use super::triangle::Sides;
-use super::{Ring, TriangleData, Tube, Visit, cuboid, flat, sphere, torus, triangle, tube};
+use super::{Point, Ring, TriangleData, Tube, Visit, cuboid, flat, sphere, torus, triangle, tube};
 use crate::math::Real;
 use crate::math::real::{dot, each3, scaled, splat3};
 use crate::render::frame::{Frame, LinearMap};
@@ -140,15 +140,21 @@ impl Primitive {
             Kind::Tube(t) => tube::point(t, p, part),
             Kind::Ring(ring) => torus::point(ring, p),
         };
-        let error = self.frame.world_error(tables.maps, point.p, point.error);
-        let n = self.frame.normal_to_world(tables.maps, point.n);
-        Surface {
-            p: self.frame.point_to_world(tables.maps, point.p),
-            n,
-            ns: n,
-            offset: dot(each3!(n, x => x.abs()), error),
-            local: point.p,
-        }
+        surface_at(&self.frame, tables.maps, &point)
+    }
+}
+
+/// A point of a shape in its frame, in the world.
+#[inline(always)]
+pub fn surface_at<R: Real>(frame: &Frame, maps: &[LinearMap], point: &Point<R>) -> Surface<R> {
+    let error = frame.world_error(maps, point.p, point.error);
+    let n = frame.normal_to_world(maps, point.n);
+    Surface {
+        p: frame.point_to_world(maps, point.p),
+        n,
+        ns: n,
+        offset: dot(each3!(n, x => x.abs()), error),
+        local: point.p,
     }
 }
 

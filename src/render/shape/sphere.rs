@@ -7,6 +7,7 @@ use crate::math::real::{dot, each3};
 use crate::render::ray::{LocalRay, Own, convex_exit};
 
 /// |p|² − r².
+#[derive(Clone, Copy, Debug)]
 pub struct Ball {
     /// Its radius.
     pub r: f64,
