@@ -12,6 +12,7 @@ mod budget;
 mod bundle;
 mod certifier;
 mod coat;
+mod curve;
 mod estimate;
 mod leaves;
 mod lit;
@@ -30,6 +31,7 @@ mod target;
 #[cfg(test)]
 pub(super) mod tests;
 mod texels;
+mod undecided;
 mod visible;
 mod waves;
 mod window;
