@@ -62,8 +62,11 @@ impl<'c> Study<'c> {
     /// The light that a sheet sends along the rays, but for what goes straight through it.
     pub fn surface_light(&mut self, p: &Polygon, ray: &Bundle, sheet: &Sheet, depth: u32) -> Bound {
         let world = self.scene.world;
-        let met = Met::new(world, ray, sheet).filter(|met| met.is_useful(p));
-        let Some(met) = met else { return Bound::within(p, self.scene.surface_ceiling(sheet.id, depth)) };
+        let nothing_known = || Bound::within(p, self.scene.surface_ceiling(sheet.id, depth));
+        let Some(met) = Met::new(world, ray, sheet) else { return nothing_known() };
+        if !met.is_useful(p) {
+            return nothing_known();
+        }
         let shares = Shares::of(self.scene, &met);
         let outer = std::mem::replace(&mut self.ceiling, self.scene.own_ceiling(sheet.id));
         let own = self.own_light(p, &met, &shares);

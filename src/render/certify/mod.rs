@@ -25,6 +25,7 @@ mod pixel;
 mod polygon;
 mod sampler;
 mod sheet;
+mod spot;
 mod study;
 mod summary;
 mod target;

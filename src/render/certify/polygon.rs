@@ -49,6 +49,11 @@ impl Polygon {
         Polygon { n: 4, v, whole: true, moments: OnceCell::from(moments) }
     }
 
+    /// Nothing.
+    pub fn empty() -> Polygon {
+        Polygon { n: 0, v: [[0.0; 2]; MOST], whole: false, moments: OnceCell::new() }
+    }
+
     /// Its corners.
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.v[..self.n]
@@ -86,11 +91,18 @@ impl Polygon {
 
     /// The part where the form may be 0 or more: all of it, by a wide margin over rounding.
     pub fn clipped(&self, g: Form) -> Polygon {
+        let mut out = Polygon::empty();
+        self.clip(g, &mut out);
+        out
+    }
+
+    /// The same, written over `out`: who cuts again and again needs no room for each cut.
+    pub fn clip(&self, g: Form, out: &mut Polygon) {
         let margin = CUT_MARGIN * (g.c.abs() + g.x.abs() + g.y.abs() + g.r);
         let c = g.c + g.r + margin;
         let height = |p: [f64; 2]| c + (g.x * p[0] + g.y * p[1]);
-        let mut out = Polygon { n: 0, v: [[0.0; 2]; MOST], whole: false, moments: OnceCell::new() };
-        let Some(&last) = self.corners().last() else { return out };
+        (out.n, out.whole, out.moments) = (0, false, OnceCell::new());
+        let Some(&last) = self.corners().last() else { return };
         let (mut a, mut ga) = (last, height(last));
         for &b in self.corners() {
             let gb = height(b);
@@ -106,7 +118,6 @@ impl Polygon {
         if out.n < 3 {
             out.n = 0;
         }
-        out
     }
 
     fn push(&mut self, p: [f64; 2]) {
