@@ -1,8 +1,9 @@
 //! Colours along a scale of stops: the region is cut where one pair of stops follows another.
 
 use super::bound::{Bound, Span, hull};
-use super::coat::{Coloured, Spot};
+use super::coat::Coloured;
 use super::polygon::Polygon;
+use super::spot::Spot;
 use super::study::Study;
 use crate::math::Form;
 

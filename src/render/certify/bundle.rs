@@ -13,6 +13,37 @@ use crate::math::{Form, Real};
 /// Most surfaces that a bundle may meet; with more, pixels are cheaper sampled.
 const MOST_CANDIDATES: usize = 24;
 
+/// Numbers of surfaces that a bundle may meet, in place: they are asked for at every look and at every light.
+#[derive(Clone, Debug)]
+pub struct Few {
+    n: usize,
+    ids: [u32; MOST_CANDIDATES],
+}
+
+impl Few {
+    /// No surface.
+    pub fn none() -> Few {
+        Few { n: 0, ids: [0; MOST_CANDIDATES] }
+    }
+
+    /// Adds one; whether there was room.
+    pub fn push(&mut self, id: u32) -> bool {
+        let free = self.ids.get_mut(self.n);
+        let fits = free.is_some();
+        if let Some(free) = free {
+            (*free, self.n) = (id, self.n + 1);
+        }
+        fits
+    }
+}
+
+impl std::ops::Deref for Few {
+    type Target = [u32];
+    fn deref(&self) -> &[u32] {
+        &self.ids[..self.n]
+    }
+}
+
 /// The surface that rays start on.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
@@ -49,12 +80,12 @@ impl Bundle {
     }
 
     /// The surfaces that rays on `p` may meet; `None` where there are too many.
-    pub fn candidates(&self, scene: &Certifier<'_>, p: &Polygon) -> Option<Vec<u32>> {
+    pub fn candidates(&self, scene: &Certifier<'_>, p: &Polygon) -> Option<Few> {
         let margin = margin(f64::EPSILON);
         if let Some(rect) = self.rect {
             let (grid, frustum) = (&scene.grid, scene.grid.frustum(rect, margin));
             let plane = |n, offset| grid.may_meet_plane(rect, n, offset, margin);
-            return scene.gather(MOST_CANDIDATES, |b| frustum.may_meet(b), plane);
+            return scene.gather(|b| frustum.may_meet(b), plane);
         }
         let origins = bounds_of(p, self.o)?;
         let directions = bounds_of(p, self.d)?;
@@ -65,13 +96,13 @@ impl Bundle {
         let cos = if sine < 1.0 { (1.0 - sine * sine).sqrt() - margin } else { -1.0 };
         let axis = axis.map(|x| x / length);
         let cone = Cone::of_directions(origins.centre(), origins.radius(), axis, cos, margin);
-        scene.gather(MOST_CANDIDATES, |b| cone.may_meet(b), |n, offset| cone.may_reach(&origins, n, offset))
+        scene.gather(|b| cone.may_meet(b), |n, offset| cone.may_reach(&origins, n, offset))
     }
 
     /// The surfaces that may stand between a light and points of `p`; the bundle's rays come from the light.
-    pub fn occluders(scene: &Certifier<'_>, light: [f64; 3], points: &Bounds) -> Option<Vec<u32>> {
+    pub fn occluders(scene: &Certifier<'_>, light: [f64; 3], points: &Bounds) -> Option<Few> {
         let shaft = Shaft::new(points, light, margin(f64::EPSILON));
-        scene.gather(MOST_CANDIDATES, |b| shaft.may_meet(b), |n, offset| shaft.may_cross(points, n, offset))
+        scene.gather(|b| shaft.may_meet(b), |n, offset| shaft.may_cross(points, n, offset))
     }
 }
 

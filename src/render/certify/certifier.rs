@@ -9,6 +9,7 @@ use super::super::pattern::PatternNode;
 use super::super::shape::Primitive;
 use super::super::world::World;
 use super::bound::{Bound, Span, hull};
+use super::bundle::Few;
 use super::study::Study;
 use super::target::Target;
 use super::window::Window;
@@ -124,20 +125,24 @@ impl<'w> Certifier<'w> {
         made.and_then(|m| m.rescale.as_ref()).map_or(1.0, |r| r.inverse)
     }
 
-    /// The surfaces that aren't excluded, if they aren't more than `most`.
+    /// The surfaces that aren't excluded, if they are few.
     pub(super) fn gather(
         &self,
-        most: usize,
         keep: impl FnMut(&Bounds) -> bool,
         mut keep_plane: impl FnMut([f64; 3], f64) -> bool,
-    ) -> Option<Vec<u32>> {
-        let mut ids: Vec<u32> =
-            self.world.unbounded.iter().filter(|p| keep_plane(p.n, p.offset)).map(|p| p.id).collect();
+    ) -> Option<Few> {
+        let mut few = Few::none();
+        let mut fits = true;
+        for p in &self.world.unbounded {
+            if keep_plane(p.n, p.offset) {
+                fits &= few.push(p.id);
+            }
+        }
         self.world.bvh.gather(usize::MAX, keep, |id| {
-            ids.push(id);
-            ids.len() <= most
+            fits &= few.push(id);
+            fits
         });
-        (ids.len() <= most).then_some(ids)
+        fits.then_some(few)
     }
 }
 

@@ -2,8 +2,6 @@
 
 use super::super::material::Slot;
 use super::super::pattern::PatternNode;
-use super::super::pattern_point::Rows;
-use super::super::surface_pattern::PatternFrame;
 use super::super::texture::Edge;
 use super::blend::Stops;
 use super::bound::Bound;
@@ -11,6 +9,7 @@ use super::lit::Shade;
 use super::met::Met;
 use super::noise;
 use super::polygon::{AREA_ERROR, Polygon};
+use super::spot::{Coordinate, Spot};
 use super::study::Study;
 use super::texels::Texels;
 use super::waves::{Parity, parity};
@@ -20,65 +19,6 @@ use crate::scene::{Filter, Mapping};
 
 /// Most lines of one pattern through a polygon that it is cut at.
 const MOST_LINES: i64 = 24;
-
-/// Where patterns are asked for: a point of the surface, homogeneous as [`Met::p`].
-pub struct Spot<'s> {
-    /// Coordinates in the space of the pattern at hand.
-    pub p: [Coordinate; 3],
-    /// In the lengths in which the shape was made, times w.
-    local: [Form; 3],
-    /// The denominator.
-    pub w: Form,
-    spaces: &'s [Rows],
-}
-
-/// A coordinate of a point.
-#[derive(Clone, Copy)]
-pub struct Coordinate {
-    /// Times w.
-    pub over: Form,
-    /// Where it is the same all over the surface: exactly that, so that a face along a pattern's line lies on one side of it.
-    pub fixed: Option<f64>,
-}
-
-impl<'s> Spot<'s> {
-    /// The point brought to another space.
-    fn apply(rows: &Rows, p: [Coordinate; 3], w: Form) -> [Coordinate; 3] {
-        rows.rows.map(|[x, y, z, shift]| {
-            let factors = [x, y, z];
-            let depends = (0..3).any(|i| factors[i] != 0.0 && p[i].fixed.is_none());
-            let sum = three!(i => p[i].over.times(factors[i]));
-            let over = (sum[0] + sum[1]) + (sum[2] + w.times(shift));
-            let value = |i: usize| if factors[i] == 0.0 { 0.0 } else { factors[i] * p[i].fixed.unwrap_or(0.0) };
-            let fixed = (!depends).then(|| (value(0) + value(1)) + (value(2) + shift));
-            Coordinate { over, fixed }
-        })
-    }
-
-    /// The coordinates themselves.
-    fn point(&self) -> [Form; 3] {
-        self.p.map(|x| x.fixed.map_or_else(|| x.over / self.w, Form::constant))
-    }
-
-    /// Another point of the same surface.
-    fn moved(&self, p: [Form; 3]) -> Spot<'s> {
-        let one = Form::constant(1.0);
-        let p = p.map(|over| Coordinate { over, fixed: None });
-        Spot { p, local: self.local.map(|x| x / self.w), w: one, spaces: self.spaces }
-    }
-
-    fn within(&self, p: [Coordinate; 3]) -> Spot<'s> {
-        Spot { p, local: self.local, w: self.w, spaces: self.spaces }
-    }
-
-    /// The point brought from the shape's frame to a space.
-    fn brought(&self, rows: &Rows) -> [Coordinate; 3] {
-        let zero = Form::constant(0.0);
-        // A flat shape's own level is the only coordinate that stays the same in its frame.
-        let local = self.local.map(|over| Coordinate { over, fixed: (over == zero).then_some(0.0) });
-        Spot::apply(rows, local, self.w)
-    }
-}
 
 /// Goes on with the pattern's colour.
 pub type Coloured<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, [Form; 3]) -> Bound;
@@ -91,22 +31,17 @@ impl<'c> Study<'c> {
             Slot::Constant(c) => return Bound::of(p, mix(c.map(Form::constant))),
             Slot::Pattern(id) => id,
         };
-        let mut spaces = Vec::new();
-        let world = self.scene.world;
-        PatternFrame::new(world, met.primitive, met.surfacing, &mut spaces);
-        let scale = self.scene.made_scale(met.primitive);
-        let local = met.local.map(|x| x.times(scale));
-        let zero = Coordinate { over: Form::constant(0.0), fixed: Some(0.0) };
-        let spot = Spot { p: [zero; 3], local, w: met.w, spaces: &spaces };
-        let at = match spaces.first() {
-            Some(first) => spot.brought(first),
-            None => return self.unknown(p),
+        // Most pieces of a region are of a surface that was painted just before.
+        let mut spaces = std::mem::take(&mut self.spaces);
+        let spot = Spot::new(spaces.of(self.scene.world, met), met, self.scene.made_scale(met.primitive));
+        let bound = match spot.map(|spot| self.unwrapped(id, spot)) {
+            Some((id, at)) => self
+                .whole(p, (id, &at), met, shade)
+                .unwrap_or_else(|| self.coloured(p, id, &at, &mut |_, q, color| Bound::of(q, mix(color)))),
+            None => self.unknown(p),
         };
-        let (id, at) = self.unwrapped(id, spot.within(at));
-        if let Some(bound) = self.whole(p, (id, &at), met, shade) {
-            return bound;
-        }
-        self.coloured(p, id, &at, &mut |_, q, color| Bound::of(q, mix(color)))
+        self.spaces = spaces;
+        bound
     }
 
     /// What stands in a space, in that space.

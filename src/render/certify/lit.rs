@@ -62,8 +62,11 @@ impl<'c> Study<'c> {
     /// The light that a sheet sends along the rays, but for what goes straight through it.
     pub fn surface_light(&mut self, p: &Polygon, ray: &Bundle, sheet: &Sheet, depth: u32) -> Bound {
         let world = self.scene.world;
-        let met = Met::new(world, ray, sheet).filter(|met| met.is_useful(p));
-        let Some(met) = met else { return Bound::within(p, self.scene.surface_ceiling(sheet.id, depth)) };
+        let nothing_known = || Bound::within(p, self.scene.surface_ceiling(sheet.id, depth));
+        let Some(met) = Met::new(world, ray, sheet) else { return nothing_known() };
+        if !met.is_useful(p) {
+            return nothing_known();
+        }
         let shares = Shares::of(self.scene, &met);
         let outer = std::mem::replace(&mut self.ceiling, self.scene.own_ceiling(sheet.id));
         let own = self.own_light(p, &met, &shares);
@@ -107,7 +110,8 @@ impl<'c> Study<'c> {
             // The first one takes the ambient light along: one picture of the pattern less.
             let base = if number == 0 { base } else { Shade { plain: none, tinted: none } };
             let to = three!(i => met.w.times(light.at[i]) - met.p[i]);
-            let terms = Terms::new(met, ns, to, shares);
+            // In the shadow nobody asks for them.
+            let mut terms = None;
             let fin = &mut |study: &mut Study<'c>, q: &Polygon, seen: [Span; 3]| {
                 let arrives = three!(c => {
                     let share = if seen[c][0] == seen[c][1] { Form::constant(seen[c][0]) } else { Form::between(seen[c][0], seen[c][1]) };
@@ -116,6 +120,7 @@ impl<'c> Study<'c> {
                 if seen == [[0.0; 2]; 3] {
                     return study.painted(q, met, &base);
                 }
+                let terms = terms.get_or_insert_with(|| Terms::new(met, ns, to, shares));
                 let shade = Shade {
                     plain: three!(c => base.plain[c] + (arrives[c] * terms.high) * shares.specular[c]),
                     tinted: three!(c => base.tinted[c] + (arrives[c] * terms.lambert) * shares.diffuse[c]),
@@ -160,7 +165,7 @@ impl<'c> Study<'c> {
         };
         let Some(candidates) = candidates else { return fin(self, p, anything) };
         let mut blocks = Vec::new();
-        for id in candidates {
+        for &id in candidates.iter() {
             let factor = match world.constant_transmission(id) {
                 Some([1.0, 1.0, 1.0]) => continue,
                 Some(factor) => factor,

@@ -68,17 +68,22 @@ impl Certifier<'_> {
         };
         let mut leaves: Vec<Leaf> =
             self.window.first_regions(at).into_iter().map(|rect| leaf(rect, [1.0; 3])).collect();
-        let slopes = total(&leaves).map(slope);
-        leaves.iter_mut().for_each(|leaf| leaf.width = width(&leaf.part, slopes));
-        let (first, all) = (leaves.len() as u32, leaves.iter().map(|l| l.width).sum::<f64>());
-        let (mut evaluations, mut check) = (first, first);
-        // After how many looks, and what was unknown then; at first as if it were an edge.
-        let mut before = (0.5 * first as f64, all / EDGE);
+        let first = leaves.len() as u32;
+        let (mut evaluations, mut check, mut slopes) = (first, first, [1.0; 3]);
+        // After how many looks, and what was unknown then.
+        let mut before = (0.5 * first as f64, 0.0);
         loop {
             let (value, half_width, codes) = judged(total(&leaves), target);
             if codes <= target.codes {
                 let pixel = Pixel { value, half_width, codes, status: Status::Proved, evaluations, samples: 0 };
                 return Looked { leaves, evaluations, found: Found::Proved(pixel) };
+            }
+            if evaluations == first {
+                // Most pixels come to their end without them.
+                slopes = total(&leaves).map(slope);
+                leaves.iter_mut().for_each(|leaf| leaf.width = width(&leaf.part, slopes));
+                // At first as if it were an edge.
+                before.1 = leaves.iter().map(|l| l.width).sum::<f64>() / EDGE;
             }
             let spent = evaluations + 4 > target.evaluations;
             if spent || evaluations >= check {

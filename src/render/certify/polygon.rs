@@ -5,6 +5,7 @@
 
 use super::super::bounds::{larger, smaller};
 use crate::math::Form;
+use std::cell::OnceCell;
 
 /// Most corners: 4, and one more for every cut; further cuts aren't made.
 const MOST: usize = 20;
@@ -18,14 +19,18 @@ pub const AREA_ERROR: f64 = 1.0 / (1u64 << 42) as f64;
 const CUT_MARGIN: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// A convex polygon within the region's square, counter-clockwise.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Polygon {
     n: usize,
     v: [[f64; 2]; MOST],
+    /// Whether it is all of the square: then nothing need go round its corners.
+    whole: bool,
+    /// Once they were asked for: they are, again and again.
+    moments: OnceCell<Moments>,
 }
 
 /// Area and first moments.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     /// Integral of 1.
     pub area: f64,
@@ -40,7 +45,13 @@ impl Polygon {
     pub fn square() -> Polygon {
         let mut v = [[0.0; 2]; MOST];
         (v[0], v[1], v[2], v[3]) = ([-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]);
-        Polygon { n: 4, v }
+        let moments = Moments { area: 4.0, x: 0.0, y: 0.0 };
+        Polygon { n: 4, v, whole: true, moments: OnceCell::from(moments) }
+    }
+
+    /// Nothing.
+    pub fn empty() -> Polygon {
+        Polygon { n: 0, v: [[0.0; 2]; MOST], whole: false, moments: OnceCell::new() }
     }
 
     /// Its corners.
@@ -62,9 +73,15 @@ impl Polygon {
     #[inline]
     pub fn range(&self, f: Form) -> (f64, f64) {
         let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for [x, y] in self.corners() {
-            let linear = f.x * x + f.y * y;
-            (lo, hi) = (smaller(lo, linear), larger(hi, linear));
+        if self.whole {
+            // Rounding knows no sign: that is what the four corners give, to the bit.
+            hi = f.x.abs() + f.y.abs();
+            lo = -hi;
+        } else {
+            for [x, y] in self.corners() {
+                let linear = f.x * x + f.y * y;
+                (lo, hi) = (smaller(lo, linear), larger(hi, linear));
+            }
         }
         // Two products and two sums here, two sums more below.
         let slack = 8.0 * f64::EPSILON * (f.c.abs() + f.x.abs() + f.y.abs());
@@ -74,11 +91,18 @@ impl Polygon {
 
     /// The part where the form may be 0 or more: all of it, by a wide margin over rounding.
     pub fn clipped(&self, g: Form) -> Polygon {
+        let mut out = Polygon::empty();
+        self.clip(g, &mut out);
+        out
+    }
+
+    /// The same, written over `out`: who cuts again and again needs no room for each cut.
+    pub fn clip(&self, g: Form, out: &mut Polygon) {
         let margin = CUT_MARGIN * (g.c.abs() + g.x.abs() + g.y.abs() + g.r);
         let c = g.c + g.r + margin;
         let height = |p: [f64; 2]| c + (g.x * p[0] + g.y * p[1]);
-        let mut out = Polygon { n: 0, v: [[0.0; 2]; MOST] };
-        let Some(&last) = self.corners().last() else { return out };
+        (out.n, out.whole, out.moments) = (0, false, OnceCell::new());
+        let Some(&last) = self.corners().last() else { return };
         let (mut a, mut ga) = (last, height(last));
         for &b in self.corners() {
             let gb = height(b);
@@ -94,7 +118,6 @@ impl Polygon {
         if out.n < 3 {
             out.n = 0;
         }
-        out
     }
 
     fn push(&mut self, p: [f64; 2]) {
@@ -107,6 +130,10 @@ impl Polygon {
     /// Area and first moments, each off by up to [`AREA_ERROR`].
     #[inline]
     pub fn moments(&self) -> Moments {
+        *self.moments.get_or_init(|| self.integrated())
+    }
+
+    fn integrated(&self) -> Moments {
         let mut m = Moments::default();
         if self.is_empty() {
             return m;
@@ -135,6 +162,19 @@ mod tests {
 
     fn random(i: u64, k: u64) -> f64 {
         KeyedHash::new().with(i).with(k).unit() * 2.0 - 1.0
+    }
+
+    #[test]
+    fn the_square_is_as_its_corners_say() {
+        let square = Polygon::square();
+        let same = Polygon { whole: false, moments: OnceCell::new(), ..square.clone() };
+        assert_eq!(square.moments(), same.moments());
+        for i in 0..3_000 {
+            let [c, x, y] = [0, 1, 2].map(|k| random(i, k) * if i % 7 == k { 0.0 } else { 1.0 });
+            let f = Form { c, x, y, r: random(i, 3).abs() };
+            assert_eq!(square.range(f), same.range(f), "case {i}");
+        }
+        assert_eq!(square.range(Form::ALL), same.range(Form::ALL));
     }
 
     #[test]

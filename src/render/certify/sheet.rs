@@ -10,6 +10,7 @@ use super::super::shape::{BOTTOM, Ball, Kind, SIDE, TOP, Tube};
 use super::bundle::Bundle;
 use super::certifier::Certifier;
 use super::polygon::Polygon;
+use super::undecided::Undecided;
 use crate::math::Form;
 use crate::math::real::{Real, dot, minus, three};
 
@@ -23,7 +24,7 @@ pub struct Sheet {
     /// Whether rays come from the side that its normal points away from.
     pub inside: bool,
     /// Rays meet it where all of these are 0 or more.
-    pub tests: Vec<Form>,
+    pub tests: Undecided,
     /// 1/t: the larger, the nearer. Of flat sheets as straight as the rays, and 0 at the horizon.
     pub nearness: Form,
     /// t; unknown where the sheet reaches the horizon.
@@ -91,15 +92,12 @@ impl Sheets<'_> {
                 self.quadric(id, &ray, &Ball { r: *r }, wanted, |_| [None, None])
             }
             Kind::Plane | Kind::Disc { .. } if own.is_some() => Ok(()),
-            Kind::Plane => self.level(id, 0.0, &ray, 1, 0.0, false, |_, _| Vec::new()),
-            Kind::Disc { r, hole } => self.level(id, 0.0, &ray, 1, 0.0, false, |ray, s| {
-                let rho2 = squared_distance(ray, s);
+            Kind::Plane => self.level(id, 0.0, &ray, 1, 0.0, false, |_, _| true),
+            Kind::Disc { r, hole } => self.level(id, 0.0, &ray, 1, 0.0, false, |s, may_hold| {
+                let rho2 = squared_distance(&ray, s);
                 let s2 = s * s;
-                let mut tests = vec![s2.times(*r).times(*r) - rho2];
-                if *hole > 0.0 {
-                    tests.push(rho2 - s2.times(*hole).times(*hole));
-                }
-                tests
+                may_hold(s2.times(*r).times(*r) - rho2)
+                    && (!(*hole > 0.0) || may_hold(rho2 - s2.times(*hole).times(*hole)))
             }),
             Kind::Cuboid(half) => {
                 let outside = (0..3).any(|i| {
@@ -126,23 +124,7 @@ impl Sheets<'_> {
         }
     }
 
-    /// Adds a sheet unless its tests exclude it.
-    fn push(&mut self, mut sheet: Sheet) {
-        let mut open = Vec::with_capacity(sheet.tests.len());
-        for g in std::mem::take(&mut sheet.tests) {
-            let (lo, hi) = self.p.range(g);
-            if hi < 0.0 {
-                return;
-            }
-            if lo < 0.0 {
-                open.push(g);
-            }
-        }
-        sheet.tests = open;
-        self.found.push(sheet);
-    }
-
-    /// The plane at `height` along an axis, between the tests that `within` makes of the ray and of 1/t. The
+    /// The plane at `height` along an axis, between the tests that `within` makes of 1/t, as long as they may hold. The
     /// normal points up the axis, or down it if `turned`.
     #[allow(clippy::too_many_arguments)]
     fn level(
@@ -153,7 +135,7 @@ impl Sheets<'_> {
         axis: usize,
         height: f64,
         turned: bool,
-        within: impl FnOnce(&LocalRay<Form>, Form) -> Vec<Form>,
+        within: impl FnOnce(Form, &mut dyn FnMut(Form) -> bool) -> bool,
     ) -> Result<(), Unknown> {
         let way = Form::constant(height) - (ray.o[axis] + ray.o_lo[axis]);
         let (lo, hi) = self.p.range(way);
@@ -162,11 +144,13 @@ impl Sheets<'_> {
         }
         let up = lo > 0.0;
         let nearness = (ray.d[axis] + ray.d_lo[axis]) / way;
-        let mut tests = vec![nearness];
-        tests.extend(within(ray, nearness));
+        let (p, mut tests) = (self.p, Undecided::none());
+        if !tests.may_hold(p, nearness) || !within(nearness, &mut |g| tests.may_hold(p, g)) {
+            return Ok(());
+        }
         let t = nearness.reciprocal();
         let convex = matches!(self.scene.world.primitives()[id as usize].kind, Kind::Cuboid(_) | Kind::Tube(_));
-        self.push(Sheet { id, part, inside: up != turned, tests, nearness, t, convex, flat: true, veil: false });
+        self.found.push(Sheet { id, part, inside: up != turned, tests, nearness, t, convex, flat: true, veil: false });
         Ok(())
     }
 
@@ -192,13 +176,11 @@ impl Sheets<'_> {
                 if (beyond && !wanted.entering) || (within && !wanted.leaving) {
                     continue;
                 }
-                self.level(id, part, ray, axis, height, !upper, |ray, s| {
-                    let sides = [(axis + 1) % 3, (axis + 2) % 3];
-                    let both = |i: usize| {
+                self.level(id, part, ray, axis, height, !upper, |s, may_hold| {
+                    [(axis + 1) % 3, (axis + 2) % 3].into_iter().all(|i| {
                         let at = (ray.o[i] + ray.o_lo[i]) * s + (ray.d[i] + ray.d_lo[i]);
-                        [s.times(half[i]) - at, s.times(half[i]) + at]
-                    };
-                    sides.into_iter().flat_map(both).collect()
+                        may_hold(s.times(half[i]) - at) && may_hold(s.times(half[i]) + at)
+                    })
                 })?;
             }
         }
@@ -238,8 +220,8 @@ impl Sheets<'_> {
             }
             // The radius was rounded twice; a form says so.
             let radius = Form::constant(tube.slope).times(height) + Form::constant(tube.radius);
-            self.level(id, part, ray, 1, height, part == BOTTOM, |ray, s| {
-                vec![s * s * (radius * radius) - squared_distance(ray, s)]
+            self.level(id, part, ray, 1, height, part == BOTTOM, |s, may_hold| {
+                may_hold(s * s * (radius * radius) - squared_distance(ray, s))
             })?;
         }
         Ok(())
@@ -298,9 +280,11 @@ impl Sheets<'_> {
                 continue;
             }
             let t = t0 + shift * inverse;
-            let mut tests = vec![disc, t];
-            tests.extend(ends(t).into_iter().flatten());
-            self.push(Sheet {
+            let mut tests = Undecided::none();
+            if ![Some(disc), Some(t)].into_iter().chain(ends(t)).flatten().all(|g| tests.may_hold(self.p, g)) {
+                continue;
+            }
+            self.found.push(Sheet {
                 id,
                 part: SIDE,
                 inside,
@@ -331,9 +315,11 @@ impl Sheets<'_> {
         if !t.is_known() {
             return Err(Unknown);
         }
-        let mut tests = vec![t];
-        tests.extend(ends(t).into_iter().flatten());
-        self.push(Sheet {
+        let mut tests = Undecided::none();
+        if !tests.may_hold(self.p, t) || !ends(t).into_iter().flatten().all(|g| tests.may_hold(self.p, g)) {
+            return Ok(());
+        }
+        self.found.push(Sheet {
             id,
             part: SIDE,
             inside: true,
@@ -369,15 +355,30 @@ impl Sheets<'_> {
             return Err(Unknown);
         }
         let nearness = dot(n, d) / height;
-        let mut tests = vec![nearness];
+        let mut tests = Undecided::none();
+        if !tests.may_hold(self.p, nearness) {
+            return Ok(());
+        }
         for i in 0..3 {
             let (a, b) = (v[i], v[(i + 1) % 3]);
             let edge = three!(k => Form::constant(b[k]) - Form::constant(a[k]));
             let volume = dot(d, cross(to[i], edge));
-            tests.push(if behind == (round > 0.0) { volume } else { -volume });
+            if !tests.may_hold(self.p, if behind == (round > 0.0) { volume } else { -volume }) {
+                return Ok(());
+            }
         }
         let t = nearness.reciprocal();
-        self.push(Sheet { id, part: 0.0, inside: behind, tests, nearness, t, convex: false, flat: true, veil: false });
+        self.found.push(Sheet {
+            id,
+            part: 0.0,
+            inside: behind,
+            tests,
+            nearness,
+            t,
+            convex: false,
+            flat: true,
+            veil: false,
+        });
         Ok(())
     }
 }

@@ -5,6 +5,7 @@ use super::bound::{Bound, Span};
 use super::bundle::Bundle;
 use super::certifier::Certifier;
 use super::polygon::Polygon;
+use super::spot::Spaces;
 use crate::math::Form;
 
 /// Most cuts of one region. A region that needs more is better divided: pieces cost as much as a smaller region does.
@@ -22,6 +23,8 @@ pub struct Study<'c> {
     pub in_rows: bool,
     /// Surfaces of glass so far.
     pub bends: u32,
+    /// Of the surface that was painted last.
+    pub spaces: Spaces,
     /// The most weight of the rays at hand.
     weight: f64,
     /// Cuts so far.
@@ -34,7 +37,16 @@ pub type Branch<'b, 'c> = &'b mut dyn FnMut(&mut Study<'c>, &Polygon, bool) -> B
 impl<'c> Study<'c> {
     /// With nothing known and nothing spent.
     pub fn new(scene: &'c Certifier<'c>) -> Study<'c> {
-        Study { scene, ceiling: [[0.0; 2]; 3], undivided: false, in_rows: false, bends: 0, weight: 1.0, pieces: 0 }
+        Study {
+            scene,
+            ceiling: [[0.0; 2]; 3],
+            undivided: false,
+            in_rows: false,
+            bends: 0,
+            spaces: Spaces::default(),
+            weight: 1.0,
+            pieces: 0,
+        }
     }
 
     /// What is known of the light in a rectangle of the picture: left, top, right, bottom.

@@ -50,20 +50,27 @@ impl Texels<'_> {
             ));
         }
         let straight = |f: Form, shift: f64| Form { c: f.c - shift, r: 0.0, ..f };
-        let between = |p: &Polygon, f: Form, lo: f64, hi: f64| p.clipped(straight(f, lo)).clipped(-straight(f, hi));
+        let mut half = Polygon::empty();
+        let mut between = |p: &Polygon, f: Form, (lo, hi): (f64, f64), out: &mut Polygon| {
+            p.clip(straight(f, lo), &mut half);
+            half.clip(-straight(f, hi), out);
+        };
+        let (mut column, mut inner_column) = (Polygon::empty(), Polygon::empty());
+        let (mut cell, mut inner) = (Polygon::empty(), Polygon::empty());
+        let around = self.around((i0, i1), (j0, j1));
         for i in i0..=i1 {
-            let column = between(p, self.x, i as f64, i as f64 + 1.0);
+            between(p, self.x, (i as f64, i as f64 + 1.0), &mut column);
             if column.is_empty() {
                 continue;
             }
-            let inner_column = between(&column, self.x, i as f64 + rx, i as f64 + 1.0 - rx);
+            between(&column, self.x, (i as f64 + rx, i as f64 + 1.0 - rx), &mut inner_column);
             for j in j0..=j1 {
-                let cell = between(&column, self.y, j as f64, j as f64 + 1.0);
+                between(&column, self.y, (j as f64, j as f64 + 1.0), &mut cell);
                 if cell.is_empty() {
                     continue;
                 }
-                let inner = between(&inner_column, self.y, j as f64 + ry, j as f64 + 1.0 - ry);
-                self.add(&mut tally, (i, j), cell.moments(), inner.area());
+                between(&inner_column, self.y, (j as f64 + ry, j as f64 + 1.0 - ry), &mut inner);
+                tally.add(&around.of((i - i0) as usize, (j - j0) as usize), cell.moments(), inner.area());
             }
         }
         Some(tally.light(p, shade))
@@ -85,22 +92,39 @@ impl Texels<'_> {
         range
     }
 
-    /// Adds a texel that is seen on a cell, of which `inner` is surely its.
-    fn add(&self, tally: &mut Tally, (i, j): (i64, i64), cell: Moments, inner: f64) {
-        let texel = self.at(i, j);
-        let around = self.any((i - 1, i + 1), (j - 1, j + 1));
-        let border = larger(cell.area - inner, 0.0) + 2.0 * AREA_ERROR;
-        for c in 0..3 {
-            let m = &mut tally.moments[c];
-            (m.area, m.x, m.y) = (m.area + texel[c] * cell.area, m.x + texel[c] * cell.x, m.y + texel[c] * cell.y);
-            tally.differ[c] += border * larger(around[c][1] - texel[c], texel[c] - around[c][0]);
+    /// The texels of some columns and rows, and where those lie that surround each.
+    fn around(&self, (i0, i1): (i64, i64), (j0, j1): (i64, i64)) -> Around {
+        let height = (j1 - j0 + 3) as usize;
+        let mut texels = Vec::with_capacity((i1 - i0 + 3) as usize * height);
+        for i in i0 - 1..=i1 + 1 {
+            for j in j0 - 1..=j1 + 1 {
+                texels.push(self.at(i, j));
+            }
         }
-        tally.values = Some(match tally.values {
-            Some(values) => three!(c => hull(values[c], around[c])),
-            None => around,
-        });
-        tally.area += cell.area;
-        tally.error += AREA_ERROR;
+        let spans = |k: usize| texels[k].map(|x| [x; 2]);
+        let tall = |k: usize| {
+            let (a, b, c) = (spans(k), spans(k + 1), spans(k + 2));
+            [0, 1, 2].map(|i| hull(hull(a[i], b[i]), c[i]))
+        };
+        let tall = (0..texels.len().saturating_sub(2)).map(tall).collect();
+        Around { texels, tall, height }
+    }
+}
+
+/// Texels of a block and one row and column more on each side, column by column.
+struct Around {
+    texels: Vec<[f64; 3]>,
+    /// Of each texel, where it and the two below it lie; of the last two of a column nothing of use.
+    tall: Vec<[Span; 3]>,
+    height: usize,
+}
+
+impl Around {
+    /// A texel of the block, and where it and its eight neighbours lie.
+    fn of(&self, i: usize, j: usize) -> ([f64; 3], [Span; 3]) {
+        let at = i * self.height + j;
+        let [a, b, c] = [0, 1, 2].map(|k| &self.tall[at + k * self.height]);
+        (self.texels[at + self.height + 1], three!(k => hull(hull(a[k], b[k]), c[k])))
     }
 }
 
@@ -117,6 +141,22 @@ struct Tally {
 }
 
 impl Tally {
+    /// Adds a texel that is seen on a cell, of which `inner` is surely its.
+    fn add(&mut self, (texel, around): &([f64; 3], [Span; 3]), cell: Moments, inner: f64) {
+        let border = larger(cell.area - inner, 0.0) + 2.0 * AREA_ERROR;
+        for c in 0..3 {
+            let m = &mut self.moments[c];
+            (m.area, m.x, m.y) = (m.area + texel[c] * cell.area, m.x + texel[c] * cell.x, m.y + texel[c] * cell.y);
+            self.differ[c] += border * larger(around[c][1] - texel[c], texel[c] - around[c][0]);
+        }
+        self.values = Some(match self.values {
+            Some(values) => three!(c => hull(values[c], around[c])),
+            None => *around,
+        });
+        self.area += cell.area;
+        self.error += AREA_ERROR;
+    }
+
     fn light(&self, p: &Polygon, shade: &Shade) -> Bound {
         let values = self.values.unwrap_or([[0.0, 1.0]; 3]);
         let wide =

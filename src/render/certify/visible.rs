@@ -32,7 +32,7 @@ impl<'c> Study<'c> {
         let Some(candidates) = ray.candidates(scene, p) else { return self.unknown(p) };
         self.ceiling = scene.ceiling_among(&candidates, depth);
         let mut sheets = Sheets { scene, p, ray, found: Vec::new() };
-        for &id in &candidates {
+        for &id in candidates.iter() {
             if sheets.add(id).is_err() {
                 return self.unknown(p);
             }
@@ -47,7 +47,7 @@ impl<'c> Study<'c> {
     /// Decides, sheet by sheet from number `next` on, which are met.
     fn gathered(&mut self, p: &Polygon, view: &View<'_>, next: usize, hits: &mut Hits) -> Bound {
         let Some(sheet) = view.sheets.get(next) else {
-            return self.in_order(p, view, &hits.clone());
+            return self.in_order(p, view, hits);
         };
         if hits.met.iter().any(|&h| view.hides(self, p, h, sheet)) {
             return self.gathered(p, view, next + 1, hits);
