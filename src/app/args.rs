@@ -365,7 +365,7 @@ mod tests {
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
         let help = |command: &str| Cli::try_parse_from(["rtdsl", command, "--help"]).unwrap_err().to_string();
-        assert!(help("render").starts_with("Make the picture of a scene.\n"), "{}", help("render"));
+        assert!(help("render").starts_with("Make the picture of a scene\n"), "{}", help("render"));
         assert!(help("watch").starts_with("Make the picture again whenever"), "{}", help("watch"));
     }
 
