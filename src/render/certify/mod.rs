@@ -12,7 +12,6 @@ mod budget;
 mod bundle;
 mod certifier;
 mod coat;
-mod curve;
 mod estimate;
 mod leaves;
 mod lit;

@@ -2,7 +2,7 @@
 
 use super::super::bounds::{larger, smaller};
 use super::bound::Span;
-use super::curve::{decoded, encoded};
+use crate::scene::color::{decode_srgb, encode_srgb};
 
 /// What rounding may add to an error, in codes: the curve's two formulas, by which this is judged and that is written, meet to 1e-7
 /// of white only.
@@ -71,7 +71,7 @@ impl Target {
         let codes = [code(lo), code(hi)];
         // Where it is short, the curve is straight.
         let value = match codes[1] - codes[0] > STRAIGHT && lo >= 0.0 && hi <= 1.0 {
-            true => decoded((codes[0] + codes[1]) * (0.5 / 255.0)),
+            true => decode_srgb((codes[0] + codes[1]) * (0.5 / 255.0)),
             false => 0.5 * lo + 0.5 * hi,
         };
         let value = stored(value);
@@ -147,7 +147,7 @@ impl Pixel {
             if least <= wanted && wanted <= most {
                 at[c] = stored(value[c]);
             } else if least <= most {
-                at[c] = stored(decoded(if wanted < least { least } else { most } / 255.0));
+                at[c] = stored(decode_srgb(if wanted < least { least } else { most } / 255.0));
             }
             half_width[c] = larger(hi - at[c], at[c] - lo);
             codes = larger(codes, target.error(at[c], [lo, hi]));
@@ -168,7 +168,7 @@ impl Pixel {
 
 /// The code of 8 bits, not rounded, of linear light.
 pub fn code(v: f64) -> f64 {
-    255.0 * encoded(v.clamp(0.0, 1.0))
+    255.0 * encode_srgb(v.clamp(0.0, 1.0))
 }
 
 /// How much more light than `v` a channel may hold without its code growing by more than `codes`: a trifle less.
@@ -177,7 +177,7 @@ pub(super) fn room(v: f64, codes: f64) -> f64 {
     match code(v) + codes {
         // Beyond the last code all light is the same.
         most if most >= 255.0 => 1.0,
-        most => larger(decoded(most / 255.0) - v, 0.0) * (1.0 - 1.0 / (1u64 << 30) as f64),
+        most => larger(decode_srgb(most / 255.0) - v, 0.0) * (1.0 - 1.0 / (1u64 << 30) as f64),
     }
 }
 
