@@ -9,8 +9,8 @@ use super::world::World;
 use crate::math::Lane;
 use crate::math::real::{Mask, dot, each3, splat3, three};
 
-/// Longest list of candidates that every ray of a batch tests in turn; beyond it each ray goes through the tree. Measured over
-/// the examples, one ray at a time: 3 to 6 are equally good, 12 costs a fifth more, 24 to 48 up to half.
+/// Longest list of candidates that every ray of a batch tests in turn; beyond it each ray goes through the tree. Counted in instructions
+/// over six examples, four rays at a time: 8 takes 1 to 5 % less than 4 in three of them, and 0.2 % more at most in the others.
 pub const LONGEST_LIST: usize = 8;
 
 /// A node of the tree looked at for all rays takes about as long as this many of them take to go through the tree alone, so no more

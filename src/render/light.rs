@@ -1,99 +1,17 @@
 //! How much of a light arrives: shadow rays, and what transparent objects let through.
 
 use super::batch::PADDING;
-use super::between::{Blocked, Met};
+use super::between::Blocked;
 use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
-use super::ray::Own;
-use super::shape::{Mesh, Visit};
+use super::shadow_rays::{Shadow, ShadowRays};
+use super::shape::Mesh;
 use super::span::{least, spread, stored};
 use super::surface_pattern::PatternFrame;
-use super::touch::ButAtTheEnd;
-use super::way::Way;
 use super::world::World;
 use crate::math::real::{Mask, each3, select3, splat3, three};
 use crate::math::{Elem, Lane, Real};
-use crate::render::pattern_point::Rows;
-
-/// Room for what a shadow ray needs beside its candidates.
-#[derive(Debug, Default)]
-pub struct Shadow {
-    transparent: Vec<u32>,
-    spaces: Vec<Rows>,
-    /// What lately stood before each light: it often does so again.
-    blockers: Vec<Option<u32>>,
-    /// Of camera rays' hits, and of others.
-    ways: [Way; 2],
-    /// Whether these are others.
-    pub deep: bool,
-}
-
-/// Rays from points of surfaces to one light.
-#[derive(Clone, Copy)]
-pub struct ShadowRays<'w, L: Lane> {
-    /// The surfaces that they start on.
-    pub source: L,
-    /// The parts of them.
-    pub part: L,
-    /// 1 in lanes that leave them to the outside.
-    pub outward: L,
-    /// Where they start.
-    pub o: [L; 3],
-    /// Towards the light, of unit length.
-    pub l: [L; 3],
-    /// How far it is.
-    pub distance: L,
-    /// The light, by number.
-    pub light: usize,
-    /// The primitives that the light lies on.
-    pub touched: &'w [u32],
-}
-
-impl<L: Lane> ShadowRays<'_, L> {
-    /// Whether all lanes of `open` start on surface `k` and surely don't meet it again.
-    #[inline(always)]
-    fn left_for_good(&self, world: &World, k: u32, open: L::Mask) -> bool {
-        let leaves = self.source.same(L::splat(k as f64)) & self.outward.same(L::one());
-        // Mostly none does, and the primitive needn't be looked at.
-        leaves.any() && world.primitive(k).kind.is_left_for_good() && !(open & !leaves).any()
-    }
-
-    /// Whether all lanes of `open` surely miss surface `k`, and by far: told by the ball around it, before anything else of it is
-    /// looked at, for that may be anywhere in memory.
-    #[inline(always)]
-    fn pass_by(&self, world: &World, k: u32, open: L::Mask) -> bool {
-        match world.ball(k) {
-            Some(ball) => {
-                let here = self.source.same(L::splat(k as f64));
-                !(open & (here | !ball.passed_by::<L, false>((self.o, self.l)))).any()
-            }
-            None => false,
-        }
-    }
-
-    /// Visits the crossings with surface `k`.
-    #[inline(always)]
-    fn crossings(&self, world: &World, k: u32, visit: &mut impl Visit<L>) {
-        let own = Own::of(self.source.same(L::splat(k as f64)), self.part, self.outward.same(L::one()));
-        world.crossings::<L, false>(k, (self.o, self.l), own, visit);
-    }
-
-    /// The crossings with surface `k` that lie between start and light; in a function of its own, for it is seldom asked.
-    #[inline(always)]
-    fn met(&self, world: &World, k: u32) -> Met<L> {
-        L::vectorize(
-            #[inline(always)]
-            || {
-                let nothing = (L::zero(), L::zero(), L::Mask::splat(false));
-                let mut met = Met { distance: self.distance, crossings: [nothing; 4], n: 0 };
-                let mut visit = ButAtTheEnd::new(self.distance, self.touched.contains(&k), &mut met);
-                self.crossings(world, k, &mut visit);
-                met
-            },
-        )
-    }
-}
 
 /// The share of light, by channel, that arrives in the lanes of `active`. Every crossing of a transparent surface dims by its
 /// transmission; the factors are multiplied in the order of the primitives' numbers, so that no order of tests changes a

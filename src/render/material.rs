@@ -1,7 +1,8 @@
 //! Materials as the tracer evaluates them, compiled from the scene: constants folded, and only what a live slot shows.
 
 use super::bounds::smaller;
-use super::pattern::{PatternNode, PatternTable};
+use super::pattern::PatternTable;
+use super::pattern_node::PatternNode;
 use super::pattern_point::Rows;
 use super::texture::Texture;
 use crate::math::Affine;

@@ -2,8 +2,8 @@
 //!
 //! [`World::build`] takes from a scene what its picture requires; [`render`] traces it tile by tile; [`probe`] tells what one
 //! pixel sees. Within: `shape/` holds the kernels, one a file, each written once for every scalar; `bvh`, `cull` and `candidates` find
-//! what a batch of rays can meet; `tracer`, `shade` and `light` follow the rays; `pattern` and `material` colour what they
-//! meet. [`certify`] bounds what all rays of a region see, and brings pixels to a stated error; a `sketch` sends more rays where
+//! what a batch of rays can meet; `tracer`, `shade`, `illuminate` and `light` follow the rays; `pattern`, `material` and `paint` colour what
+//! they meet. [`certify`] bounds what all rays of a region see, and brings pixels to a stated error; a `sketch` sends more rays where
 //! neighbours differ.
 
 mod assemble;
@@ -17,6 +17,7 @@ pub mod camera;
 mod candidates;
 mod census;
 pub mod certify;
+mod closest;
 mod confine;
 mod crew;
 pub mod cull;
@@ -42,6 +43,7 @@ pub mod optics;
 pub mod options;
 mod paint;
 pub mod pattern;
+pub mod pattern_node;
 mod pattern_point;
 mod place;
 mod probe;
@@ -51,6 +53,7 @@ mod run;
 mod run_of_hits;
 mod search;
 mod shade;
+mod shadow_rays;
 pub mod shape;
 mod sketch;
 mod slabs;

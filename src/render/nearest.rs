@@ -3,6 +3,7 @@
 use super::batch::{HitColumns, NONE, PADDING, RayBatch, load3};
 use super::bvh::{Leaves, TEST};
 use super::candidates::Candidates;
+use super::closest::Nearest;
 use super::ray::Own;
 use super::run::place;
 use super::shape::{Mesh, Visit};
@@ -29,7 +30,9 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
         }
     }
     for &k in &candidates.ids {
-        sweep::<L, AT_EYE>(world, k, rays, hits);
+        if !sweep::<L, AT_EYE>(world, k, rays, hits) {
+            test_each::<L, AT_EYE>(world, k, rays, hits);
+        }
     }
     if !candidates.tree {
         return;
@@ -37,6 +40,21 @@ pub fn nearest<L: Lane, const AT_EYE: bool>(
     for g in (0..rays.len).step_by(L::WIDTH) {
         let mut best = if by_tree_alone { Nearest::none() } else { Nearest::<L>::load(hits, g) };
         best.through_tree(world, &Start::of::<AT_EYE>(rays, g), way);
+        best.store(hits, g);
+    }
+}
+
+/// Tests surface `k` against every ray of a batch, a register at a time.
+#[inline(always)]
+fn test_each<L: Lane, const AT_EYE: bool>(
+    world: &World,
+    k: u32,
+    rays: &RayBatch<L::Elem>,
+    hits: &mut HitColumns<L::Elem>,
+) {
+    for g in (0..rays.len).step_by(L::WIDTH) {
+        let mut best = Nearest::<L>::load(hits, g);
+        best.test_all(world, &[k], &Start::of::<AT_EYE>(rays, g));
         best.store(hits, g);
     }
 }
@@ -81,48 +99,7 @@ impl<L: Lane> Start<L> {
     }
 }
 
-/// Keeps the nearest crossing; of two at the same t, that of the primitive with the lower number.
-#[derive(Clone, Copy)]
-pub struct Nearest<R> {
-    t: R,
-    id: R,
-    part: R,
-    /// The surface that is tested.
-    pub current: R,
-}
-
 impl<L: Lane> Nearest<L> {
-    /// Nothing found yet.
-    #[inline(always)]
-    fn none() -> Nearest<L> {
-        Nearest { t: L::splat(f64::INFINITY), id: L::splat(NONE), part: L::zero(), current: L::zero() }
-    }
-
-    /// What the rays from number `g` on met so far.
-    #[inline(always)]
-    pub fn load(hits: &HitColumns<L::Elem>, g: usize) -> Nearest<L> {
-        Nearest {
-            t: L::load(&hits.t[g..]),
-            id: L::load(&hits.id[g..]),
-            part: L::load(&hits.part[g..]),
-            current: L::zero(),
-        }
-    }
-
-    /// Writes it there.
-    #[inline(always)]
-    pub fn store(&self, hits: &mut HitColumns<L::Elem>, g: usize) {
-        self.t.store(&mut hits.t[g..]);
-        self.id.store(&mut hits.id[g..]);
-        self.part.store(&mut hits.part[g..]);
-    }
-
-    /// Tests surface `k` with the rays of a batch from number `g` on.
-    #[inline(always)]
-    pub fn test_from<const AT_EYE: bool>(&mut self, world: &World, k: u32, rays: &RayBatch<L::Elem>, g: usize) {
-        self.test_all(world, &[k], &Start::of::<AT_EYE>(rays, g));
-    }
-
     /// Tests surface `k`.
     #[inline(always)]
     fn test(&mut self, world: &World, k: u32, ray: ([L; 3], [L; 3]), own: Option<Own<L>>) {
@@ -306,21 +283,5 @@ impl<R: Real> Visit<R> for Met<R> {
     #[inline(always)]
     fn crossing(&mut self, t: R, _part: R, valid: R::Mask) {
         (self.t, self.valid) = (t, valid);
-    }
-}
-
-impl<R: Real> Visit<R> for Nearest<R> {
-    #[inline(always)]
-    fn needs_further(&self, t: R, valid: R::Mask) -> R::Mask {
-        valid & !R::zero().lt(t)
-    }
-
-    #[inline(always)]
-    fn crossing(&mut self, t: R, part: R, valid: R::Mask) {
-        let nearer = t.lt(self.t) | (t.same(self.t) & self.current.lt(self.id));
-        let m = valid & R::zero().lt(t) & nearer;
-        self.t = R::select(m, t, self.t);
-        self.id = R::select(m, self.current, self.id);
-        self.part = R::select(m, part, self.part);
     }
 }

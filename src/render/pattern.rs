@@ -6,12 +6,13 @@
 //!
 //! Everything here uses plain products and sums: the same bits whether or not it is compiled with fused operations.
 
-use super::pattern_point::{PatternPoint, Rows, apply};
+use super::pattern_node::PatternNode;
+use super::pattern_point::{PatternPoint, apply};
 use super::texture::{Edge, Texture};
 use crate::math::fun;
 use crate::math::noise::{cell_noise, unit_noise, vector_noise};
 use crate::math::real::{Lane, Mask, Real, each3, select3, splat3, three};
-use crate::scene::{Filter, Mapping};
+use crate::scene::Mapping;
 
 /// The patterns of a world.
 #[derive(Clone, Debug, Default)]
@@ -22,84 +23,6 @@ pub struct PatternTable {
     pub spaces: Vec<crate::math::Affine>,
     /// The pictures.
     pub textures: Vec<Texture>,
-}
-
-/// A pattern of the world. `a` and `b` are as in [`PatternKind`](crate::scene::PatternKind).
-#[derive(Clone, Debug)]
-pub enum PatternNode {
-    /// The same everywhere.
-    Constant([f64; 3]),
-    /// Solid checker.
-    Checker(u32, u32, f64),
-    /// Stripes across an axis.
-    Stripes(u32, u32, u8, f64),
-    /// Shells around an axis.
-    Rings(u32, u32, u8, f64),
-    /// From `a` to `b` along an axis.
-    Gradient(u32, u32, u8, f64),
-    /// Noise: octaves and seed.
-    Noise(u32, u32, u32, u64),
-    /// Cells: seed.
-    Cells(u32, u32, u64),
-    /// Mortar, brick, size, gap.
-    Brick(u32, u32, [f64; 2], f64),
-    /// A picture.
-    Image {
-        /// By number in [`PatternTable::textures`].
-        texture: u32,
-        /// How it is laid on.
-        mapping: Mapping,
-        /// How it is read.
-        filter: Filter,
-        /// Linear part of the map from the space in which the shape is made to the pattern's.
-        turn: [[f64; 3]; 3],
-        /// The same for normals.
-        turn_normal: [[f64; 3]; 3],
-    },
-    /// a, b, share of b.
-    Mix(u32, u32, u32),
-    /// Stops and position.
-    Blend(Vec<u32>, u32),
-    /// A pattern in a space of [`PatternTable::spaces`].
-    InSpace(u32, u32),
-    /// A pattern in a space given from the one around it.
-    Mapped(u32, Box<Rows>),
-    /// Child, amount, octaves, seed.
-    Turbulence(u32, f64, u32, u64),
-    /// Sum.
-    Add(u32, u32),
-    /// Product.
-    Multiply(u32, u32),
-    /// A pattern, cut off below and above.
-    Within(u32, f64, f64),
-}
-
-impl PatternNode {
-    /// Calls `visit` with every pattern that this one is made of.
-    pub fn for_each_child(&self, mut visit: impl FnMut(u32)) {
-        use PatternNode::*;
-        match self {
-            Constant(_) | Image { .. } => {}
-            Checker(a, b, _) | Noise(a, b, _, _) | Cells(a, b, _) | Brick(a, b, _, _) | Add(a, b) | Multiply(a, b) => {
-                visit(*a);
-                visit(*b);
-            }
-            Stripes(a, b, ..) | Rings(a, b, ..) | Gradient(a, b, ..) => {
-                visit(*a);
-                visit(*b);
-            }
-            Mix(a, b, by) => {
-                visit(*a);
-                visit(*b);
-                visit(*by);
-            }
-            Blend(stops, by) => {
-                stops.iter().for_each(|s| visit(*s));
-                visit(*by);
-            }
-            InSpace(child, _) | Mapped(child, _) | Turbulence(child, ..) | Within(child, ..) => visit(*child),
-        }
-    }
 }
 
 #[inline(always)]
@@ -121,7 +44,7 @@ impl PatternTable {
         let (id, p) = self.outermost(id, at);
         match &self.nodes[id as usize] {
             PatternNode::Checker(a, b, size) => self.checker((*a, *b), *size, p, at),
-            PatternNode::Stripes(a, b, axis, size) => self.stripes((*a, *b), *axis, *size, p, at),
+            PatternNode::Stripes(a, b, axis, size) => self.stripes((*a, *b), (*axis, *size), p, at),
             _ => self.eval_at(id, p, at),
         }
     }
@@ -154,7 +77,7 @@ impl PatternTable {
         match &self.nodes[id as usize] {
             PatternNode::Constant(c) => splat3(*c),
             PatternNode::Checker(a, b, size) => self.checker((*a, *b), *size, p, at),
-            PatternNode::Stripes(a, b, axis, size) => self.stripes((*a, *b), *axis, *size, p, at),
+            PatternNode::Stripes(a, b, axis, size) => self.stripes((*a, *b), (*axis, *size), p, at),
             PatternNode::Rings(a, b, axis, size) => {
                 let (i, j) = ((*axis as usize + 1) % 3, (*axis as usize + 2) % 3);
                 let rho = (p[i] * p[i] + p[j] * p[j]).sqrt();
@@ -253,7 +176,13 @@ impl PatternTable {
     }
 
     #[inline(always)]
-    fn stripes<R: Lane>(&self, both: (u32, u32), axis: u8, size: f64, p: [R; 3], at: &PatternPoint<'_, R>) -> [R; 3] {
+    fn stripes<R: Lane>(
+        &self,
+        both: (u32, u32),
+        (axis, size): (u8, f64),
+        p: [R; 3],
+        at: &PatternPoint<'_, R>,
+    ) -> [R; 3] {
         self.by_parity(both, (p[axis as usize] / R::splat(size)).floor(), p, at)
     }
 

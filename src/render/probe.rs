@@ -3,10 +3,11 @@
 use super::batch::{HitColumns, NONE, RayBatch};
 use super::candidates::Candidates;
 use super::footprint::Recorder;
-use super::light::{Shadow, ShadowRays, occlusion};
+use super::light::occlusion;
 use super::material::Slot;
 use super::nearest::nearest;
 use super::options::{Options, Probe};
+use super::shadow_rays::{Shadow, ShadowRays};
 use super::shape::primitive::spawn_point;
 use super::surface_pattern::PatternFrame;
 use super::way::Way;

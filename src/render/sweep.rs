@@ -6,39 +6,33 @@
 
 use super::ball::Ball;
 use super::batch::{HitColumns, RayBatch, load3};
+use super::closest::Nearest;
 use super::confine::Confined;
 use super::known::{Known, with_known};
-use super::nearest::Nearest;
 use super::ray::Own;
 use super::run::place;
 use super::shape::primitive::Tables;
 use super::world::World;
 use crate::math::{Lane, Mask};
 
-/// Tests surface `k` against every ray of a batch. `AT_EYE` says that all origins are exactly 0.
+/// Tests surface `k` against every ray of a batch, if it is a primitive and its crossings aren't confined; says whether. `AT_EYE` says
+/// that all origins are exactly 0.
 #[inline(always)]
 pub fn sweep<L: Lane, const AT_EYE: bool>(
     world: &World,
     k: u32,
     rays: &RayBatch<L::Elem>,
     hits: &mut HitColumns<L::Elem>,
-) {
-    match world.primitives.get(k as usize) {
-        Some(primitive) if world.confines(k).is_none() => {
-            let ball = world.ball(k).filter(Ball::is_there);
-            with_known!(primitive, known => {
-                let one = One { tables: world.tables(), surface: known, k, ball };
-                one.against::<L, AT_EYE>(rays, hits);
-            });
-        }
-        _ => {
-            for g in (0..rays.len).step_by(L::WIDTH) {
-                let mut best = Nearest::<L>::load(hits, g);
-                best.test_from::<AT_EYE>(world, k, rays, g);
-                best.store(hits, g);
-            }
-        }
+) -> bool {
+    if !world.is_plain(k) {
+        return false;
     }
+    let ball = world.ball(k).filter(Ball::is_there);
+    with_known!(world.primitive(k), known => {
+        let one = One { tables: world.tables(), surface: known, k, ball };
+        one.against::<L, AT_EYE>(rays, hits);
+    });
+    true
 }
 
 /// A surface, and what rays are told of it.

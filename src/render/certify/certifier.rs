@@ -5,7 +5,7 @@ use super::super::camera::PixelGrid;
 use super::super::filter::Kernel;
 use super::super::material::{Slot, Surfacing};
 use super::super::options::Options;
-use super::super::pattern::PatternNode;
+use super::super::pattern_node::PatternNode;
 use super::super::shape::Primitive;
 use super::super::world::World;
 use super::bound::{Bound, Span, hull};

@@ -1,7 +1,7 @@
 //! Patterns over a region: where a pattern changes, the region is cut; what can't be followed lies within the pattern's range.
 
 use super::super::material::Slot;
-use super::super::pattern::PatternNode;
+use super::super::pattern_node::PatternNode;
 use super::super::texture::Edge;
 use super::blend::Stops;
 use super::bound::Bound;
