@@ -24,10 +24,11 @@ WIDTH, HEIGHT, SIDE = 1280, 720, 2
 PHASES = {
     'tile': 'camera rays and sums', 'camera': 'camera rays and sums',
     'candidates': 'culling', 'cull': 'culling', 'span': 'culling',
-    'nearest': 'nearest surface', 'walk': 'nearest surface', 'slabs': 'nearest surface',
-    'light': 'shadows', 'touch': 'shadows',
+    'nearest': 'nearest surface', 'sweep': 'nearest surface', 'closest': 'nearest surface', 'walk': 'nearest surface', 'slabs': 'nearest surface',
+    'light': 'shadows', 'shadow_rays': 'shadows', 'between': 'shadows', 'touch': 'shadows',
     'run': 'sorting', 'flock': 'sorting', 'batch': 'sorting', 'gathered': 'sorting',
-    'shade': 'shading', 'material': 'shading', 'pattern': 'patterns', 'surface_pattern': 'patterns', 'texture': 'patterns',
+    'shade': 'shading', 'surfaces': 'shading', 'run_of_hits': 'shading', 'illuminate': 'shading', 'material': 'shading',
+    'paint': 'patterns', 'pattern': 'patterns', 'surface_pattern': 'patterns', 'texture': 'patterns',
     'spawn': 'mirrored and transmitted rays', 'optics': 'mirrored and transmitted rays',
 }  # fmt: skip
 KINDS = ('add', 'mul', 'fma', 'div', 'sqrt')
