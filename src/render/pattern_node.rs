@@ -24,7 +24,7 @@ pub enum PatternNode {
     Brick(u32, u32, [f64; 2], f64),
     /// A picture.
     Image {
-        /// By number in [`PatternTable::textures`].
+        /// By number in [`PatternTable::textures`](super::pattern::PatternTable::textures).
         texture: u32,
         /// How it is laid on.
         mapping: Mapping,
@@ -39,7 +39,7 @@ pub enum PatternNode {
     Mix(u32, u32, u32),
     /// Stops and position.
     Blend(Vec<u32>, u32),
-    /// A pattern in a space of [`PatternTable::spaces`].
+    /// A pattern in a space of [`PatternTable::spaces`](super::pattern::PatternTable::spaces).
     InSpace(u32, u32),
     /// A pattern in a space given from the one around it.
     Mapped(u32, Box<Rows>),
