@@ -52,8 +52,12 @@ impl Shaft {
     pub fn new(points: &Bounds, light: [f64; 3], margin: f64) -> Shaft {
         let to = minus(points.centre(), light);
         let (distance, radius) = (length(to), points.radius());
-        let cone = Cone::around(light, 0.0, to, radius, margin);
-        Shaft { hull: widened(points.with(light), margin), cone, reach: (distance + radius) * (1.0 + margin), margin }
+        // A ray's start and direction are rounded: one from far away misses the light by as much, and may meet what is beside it.
+        let astray = margin * (distance + radius + length(light));
+        let cone = Cone::around(light, astray, to, radius, margin);
+        let hull = widened(points.with(light), margin);
+        let hull = Bounds { lo: hull.lo.map(|x| x - astray), hi: hull.hi.map(|x| x + astray) };
+        Shaft { hull, cone, reach: (distance + radius) * (1.0 + margin), margin }
     }
     /// Whether the box may reach into it.
     #[inline]
