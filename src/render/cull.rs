@@ -223,6 +223,16 @@ mod tests {
     }
 
     #[test]
+    fn a_ray_from_far_away_may_miss_the_light_by_its_rounding() {
+        for far in [1e3, 1e9, 1e15] {
+            let shaft = Shaft::new(&Bounds::around([far; 3], [0.0; 3]), [1.0; 3], MARGIN);
+            let beside = |by: f64| Bounds::around([1.0 + by, 1.0 - by, 1.0], [0.0; 3]);
+            assert!(shaft.may_meet(&beside(8.0 * f64::EPSILON * far)), "{far}");
+            assert!(!shaft.may_meet(&beside(1e-8 * far)), "{far}: no more than that");
+        }
+    }
+
+    #[test]
     fn a_cone_keeps_every_box_that_a_ray_meets() {
         let mut dropped = 0;
         for i in 0..4000 {
